@@ -4,7 +4,8 @@ The samples are equal for all designs of a kind: a dense even grid, and geometri
 radian down to less than the narrowest spike. A peak is missed where a sample exceeds it by more than `ALLOWED`,
 relative to the peak. Half of the machines that turn fully come near to a toggle, at margins of 1e-7 to 1e-1 of their
 lengths; four-bars of any lengths are of all Grashof classes, most of which move over part of a turn. Tables over the
-angle have few or many angles, even or nearly so, smooth or rough values, and all interpolations.
+angle have few or many angles, even or nearly so, smooth or rough values, and all interpolations; functions of it are
+waves with a narrow bump between breaks.
 """
 
 from __future__ import annotations
@@ -247,6 +248,25 @@ def _with_table(machines: Callable[[Random, int], ls.Scene], link: str) -> Calla
     return scene
 
 
+def _with_function(machines: Callable[[Random, int], ls.Scene], link: str) -> Callable[[Random, int], ls.Scene]:
+    def scene(random: Random, n: int) -> ls.Scene:
+        """Return machines with a torque or a force besides that is a function: waves and a narrow bump between two
+        breaks, at which it jumps."""
+        (size, order, phase), turns = random.uniform(0.0, 30.0, (3, 4)), random.integers(1, 3)
+        narrow, *breaks = 10.0 ** random.uniform(0.5, 2.0), *np.sort(random.uniform(0.0, 360.0 * turns, 2))
+
+        def load(theta2: Array) -> Array:
+            theta2 = np.mod(theta2, 360.0 * turns)
+            waves = size @ np.cos(np.radians(np.outer(order // 3.0, theta2)) / turns + phase[:, None])
+            bump = 50.0 * np.exp(-(((theta2 - breaks[0]) / narrow) ** 2))
+            return np.where((theta2 > breaks[0]) & (theta2 < breaks[1]), waves + bump, waves)
+
+        without, number = machines(random, n), {"force": (load, 9.0)} if link == "slider" else {"torque": load}
+        return replace(without, loads=(*without.loads, ls.Load(link, **number, breaks=breaks)))
+
+    return scene
+
+
 def _margin(random: Random, n: int) -> Array:
     """Return by how much machines miss a toggle, relative to their lengths: half by anything, half by little."""
     return np.where(random.random(n) < 0.5, random.uniform(0.02, 0.98, n), 10.0 ** random.uniform(-7.0, -1.0, n))
@@ -285,4 +305,6 @@ FAMILIES = {
     "knuckle-joint press with friction": Family(_press),
     "four-bar with a table": Family(_with_table(_four_bar, "rocker")),
     "slider-crank with friction and a table": Family(_with_table(_slider_crank(friction=True), "slider"), 90.0),
+    "four-bar with a function": Family(_with_function(_four_bar, "rocker")),
+    "slider-crank with friction and a function": Family(_with_function(_slider_crank(friction=True), "slider"), 90.0),
 }

@@ -29,7 +29,7 @@ from linksweep.studies.cluster import AHEAD, client_of
 from linksweep.studies.screen_progress import Progress, other_screening
 from linksweep.studies.screen_request import counts_problems, ready, screening_of
 from linksweep.studies.screening import DIM, Screening, tally_there
-from linksweep.studies.study import CHUNK, SLOW_CHUNK
+from linksweep.studies.study import usual_chunk
 from linksweep.studies.tally import Tally
 
 INTERVAL = 1.0
@@ -142,8 +142,7 @@ def screen(
             refuse(other_screening(target, sealed(target, SAVED), manifest))
             return loaded(target)
         progress = Progress(target.with_name(target.name + ".progress"), manifest)
-    usual = CHUNK if scene.steady or scene.mechanism.index in options else SLOW_CHUNK
-    tally = _run(task, int(n), int(chunk or usual), threads, client, progress)
+    tally = _run(task, int(n), int(chunk or usual_chunk(scene, options)), threads, client, progress)
     ds = _result(task, tally, int(n), further, threads)
     if target is not None and progress is not None:
         save_dataset(ds, target, manifest)

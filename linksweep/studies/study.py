@@ -14,7 +14,7 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import os
-from collections.abc import Generator, Iterable, Iterator
+from collections.abc import Generator, Iterable, Iterator, Mapping
 from importlib.metadata import version
 from itertools import chain
 from math import prod
@@ -28,8 +28,11 @@ from linksweep.files.atomic import ending_of, sync_folder, target_of
 from linksweep.files.progress import progress_bar
 from linksweep.files.seal import seal, sealed
 from linksweep.results.compute import requested, require_scene
+from linksweep.results.peak_search.pieces import known_on_pieces
 from linksweep.scene.designs.lazy import in_memory
 from linksweep.scene.designs.selection import Block
+from linksweep.scene.parameters import replaced
+from linksweep.scene.scene import Scene
 from linksweep.studies.assemble import assemble
 from linksweep.studies.checked import open_study
 from linksweep.studies.cluster import client_of, on_cluster
@@ -40,7 +43,8 @@ CHUNK = 50_000
 """Designs per chunk: some tenths of a second of work, and no more is lost by a kill."""
 
 SLOW_CHUNK = 1000
-"""Designs per chunk where loads or speeds change with the angle: exact peaks may take half a millisecond each."""
+"""Designs per chunk where loads or speeds over the angle are known by samples alone: exact peaks may take half a
+millisecond each."""
 
 LONGEST_NAME = 255
 """Most bytes in the name of a file."""
@@ -117,8 +121,8 @@ def study(
     ending_of(path, (".nc",), ADVICE)
     client = client_of(client)
     scene = in_memory(scene)
-    usual = CHUNK if scene.steady or scene.mechanism.index in options else SLOW_CHUNK
-    job = Job(scene, None if of is None else requested("of", of, scene), options, int(chunk or usual))
+    chunk = int(chunk or usual_chunk(scene, options))
+    job = Job(scene, None if of is None else requested("of", of, scene), options, chunk)
     target = target_of(path)
     if not target.exists():
         job.try_out()
@@ -128,6 +132,15 @@ def study(
                 _run(job, kept, target, threads, client)
             kept.remove()
     return _finished(target, job)
+
+
+def usual_chunk(scene: Scene, options: Mapping[str, Any]) -> int:
+    """Return the number of designs per chunk, fewer where the peaks of each take long."""
+    index = scene.mechanism.index
+    if scene.steady or index in options:
+        return CHUNK
+    first = {path: array.isel({d: slice(1) for d in array.dims if d != index}) for path, array in scene.arrays.items()}
+    return CHUNK if known_on_pieces(replaced(scene, first)) else SLOW_CHUNK
 
 
 def _manifest(job: Job) -> dict[str, Any]:

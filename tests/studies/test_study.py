@@ -130,10 +130,14 @@ def test_slow_designs_come_in_smaller_chunks(tmp_path, monkeypatch):
     run = study_module._run
     monkeypatch.setattr(study_module, "SLOW_CHUNK", 25)
     monkeypatch.setattr(study_module, "_run", lambda job, *words: chunks.append(len(job.blocks)) or run(job, *words))
-    pushed = replace(many(), loads=[ls.Load("rocker", torque=lambda theta2: np.cos(np.radians(theta2)))])
-    for name, scene, words in (("a", many(), {}), ("b", pushed, {}), ("c", pushed, {"theta2": 36})):
+    smooth, bent = (
+        replace(many(), loads=[ls.Load("rocker", torque=torque)])
+        for torque in (lambda theta2: np.cos(np.radians(theta2)), lambda theta2: abs(np.cos(np.radians(theta2 + 7.0))))
+    )
+    cases = ("a", many(), {}), ("b", smooth, {}), ("c", bent, {}), ("d", bent, {"theta2": 36})
+    for name, scene, words in cases:
         ls.study(scene, tmp_path / f"{name}.nc", of=["F32"], **words)
-    assert chunks == [1, 3, 1]  # of 60 designs
+    assert chunks == [1, 1, 3, 1]  # of 60 designs
 
 
 def test_no_progress_without_a_terminal(tmp_path, monkeypatch, capsys):

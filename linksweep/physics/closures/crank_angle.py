@@ -63,7 +63,16 @@ def angle_on_piece(half_tangent: Number, piece_middle: Number) -> Number:
     return 2.0 * small_angle((half_tangent - piece_middle) / (1.0 + half_tangent * piece_middle))
 
 
-def cubic_on_piece(angle_on_piece: Number, *numbers: Number) -> Number:
+def polynomial_on_piece(angle_on_piece: Number, origin: Number, *terms: Number) -> Number:
+    """Return the value of a polynomial of the crank's angle: `terms` are the coefficients of the powers of the angle
+    from an origin [rad], the least power first."""
+    away, total = angle_on_piece - origin, terms[-1]
+    for term in terms[-2::-1]:
+        total = term + away * total
+    return total
+
+
+def cubics_on_piece(angle_on_piece: Number, *numbers: Number) -> Number:
     """Return the value of a function of the crank's angle that is another cubic from each of several knots on.
 
     `numbers` are, for each knot, its angle on the piece [rad] and the four coefficients of the powers of the angle from
@@ -74,9 +83,7 @@ def cubic_on_piece(angle_on_piece: Number, *numbers: Number) -> Number:
     for knot in knots[1:]:
         beyond = angle_on_piece > knot[0]
         latest = tuple(where(beyond, *both) for both in zip(knot, latest, strict=True))
-    start, constant, slope, square, cube = latest
-    away = angle_on_piece - start
-    return constant + away * (slope + away * (square + away * cube))
+    return polynomial_on_piece(angle_on_piece, *latest)
 
 
 def crank_from_tangent(half_tangent: Number, far_half: Number) -> tuple[Number, Number, Number, Number]:

@@ -2,8 +2,8 @@
 
 The direction of sliding is known on each piece, so that all signals are smooth there, ends included. A piece also ends
 at each narrow near-toggle, so that its samples can be dense about it, and where a half turn does. Loads over the angle
-are polynomials between the knots of their tables, of which a piece has a few. Pieces of many designs are searched side
-by side, each as a turn that follows it there and back.
+are polynomials: of tables between their knots, of which a piece has a few, and of functions on the whole piece. Pieces
+of many designs are searched side by side, each as a turn that follows it there and back.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from linksweep.results.peak_search.between import EVERYWHERE
 from linksweep.results.peak_search.groups import ONE, Group, all_at_once, groups
 from linksweep.results.peak_search.paths import distinct
 from linksweep.results.peak_search.poles import singular_angles
-from linksweep.scene.curves.polynomials import Polynomials, names_on_piece, polynomials
+from linksweep.scene.curves.polynomials import Polynomials, polynomials
 from linksweep.scene.pairs import Array, by_row, places_of
 from linksweep.scene.scene import Scene
 
@@ -328,7 +328,7 @@ def _evaluated(group: Group, pieces: Pieces, names: tuple[str, ...]) -> tuple[Pl
     if loads is not None:
         own |= {MIDDLE: pieces.tangents(half, 0.5 * (pieces.start + pieces.end))}
         own |= _on_pieces(loads, group, pieces)
-        table = _table_on_pieces(scene.table, directions, tuple(loads.inputs), loads.per_piece)
+        table = _table_on_pieces(scene.table, directions, loads.rows(ANGLE))
     places = ((ALONG, (index, ONE)), (END, (index,)))
     return group.one_by_one(table, (*names, NEAR_WIDTH, FAR_WIDTH), pieces.row, own, places)
 
@@ -347,18 +347,15 @@ def on_piece(name: str) -> str:
 
 
 @lru_cache(maxsize=64)
-def _table_on_pieces(
-    table: Table, directions: tuple[str, ...], over_angle: tuple[str, ...] = (), knots: int = 0
-) -> Table:
-    """Return the table between samples with places on pieces, and inputs that change over the angle as polynomials
-    between knots, so many on a piece."""
+def _table_on_pieces(table: Table, directions: tuple[str, ...], loads: tuple[Row, ...] = ()) -> Table:
+    """Return the table between samples with places on pieces, and with these rows of loads over the angle."""
     between = table.between_samples
     known = {NEAR_WIDTH: WIDTHS[0], FAR_WIDTH: WIDTHS[1]} | {name: on_piece(name) for name in directions}
     rows = (
         Row(crank_angle.place_on_piece, ("half_tangent",), (ALONG, END, *ENDS)),
         Row(crank_angle.angle_on_piece, (ANGLE,), ("half_tangent", MIDDLE)),
         *(Row(planar.identity, (name,), (own,)) for name, own in known.items()),
-        *(Row(crank_angle.cubic_on_piece, (name,), (ANGLE, *names_on_piece(name, knots))) for name in over_angle),
+        *loads,
     )
     return replace(between, rows=(*between.rows, *rows))
 

@@ -1,40 +1,41 @@
-"""Find the polynomials that loads over the angle are between two angles of their tables.
+"""Find the polynomials that loads over the angle are, interval by interval of the cycle.
 
 Cubic splines, pchip curves, straight lines and steps are cubics between two neighbouring angles of their arrays, the
-knots; so is each input of the engine that is a multiple of one. A cubic is that through four samples of its interval; a
-fifth shows whether the input is one. The samples lie inside, so that a jump at a knot has its limit on either side.
+knots; smooth functions are polynomials of more terms in short intervals. So is each input of the engine that is a
+multiple of one. Its polynomial is that through samples of its interval; one more shows whether the input is one. The
+samples lie inside, so that a jump at a knot has its limit on either side.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
-from functools import lru_cache
+from functools import lru_cache, partial
 from itertools import chain
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import xarray as xr
 
+from linksweep.base.validate import Rule
+from linksweep.engine.quantity import Row
 from linksweep.engine.run import Field
-from linksweep.scene.curves.over_angle import period_of
+from linksweep.physics.closures import crank_angle
+from linksweep.scene.curves import smooth
+from linksweep.scene.curves.over_angle import called, period_of
 
 if TYPE_CHECKING:
     from linksweep.scene.scene import Scene
 
 Array = np.ndarray
 
-TERMS = 4
+CUBIC = 4
 """Coefficients of a cubic."""
-NODES = 0.5 - 0.5 * np.cos(np.pi * (np.arange(TERMS) + 0.5) / TERMS)
-"""Places of the samples in an interval, those of Chebyshev: from 0 to 1."""
-CHECKED = 0.5
-"""Place of the sample that shows whether an input is a cubic."""
-TO_COEFFICIENTS = np.linalg.inv(NODES[:, None] ** np.arange(TERMS))
+CHECKED = 0.1
+"""Place of the sample that shows whether an input is a polynomial, from −1 to 1 in its interval."""
 ROUNDING = 1e-13
-"""Difference, relative to the input's largest size, from which on an input is no cubic."""
+"""Difference, relative to the input's largest size, from which on an input is no polynomial."""
 LONGEST = 45.0
-"""Longest interval [degree]: longer ones are divided evenly."""
+"""Longest interval of a table [degree]: longer ones are divided evenly."""
 MOST_KNOTS, LONGEST_PIECE = 4, 60.0
 """Most knots of a piece, and its greatest length [degree]: with more knots an evaluation takes more operations, with
 more pieces there are more samples."""
@@ -46,27 +47,37 @@ is too short for samples."""
 
 
 class Polynomials(NamedTuple):
-    """Inputs of the engine that change over the angle, as cubics between knots.
+    """Inputs of the engine that change over the angle, as polynomials between knots.
 
     `knots` [degree] are in order, the first again after a period. The coefficients (interval, power, design dims…) of
-    each input are those of powers of the angle from the interval's knot [rad]. The cycle is cut into pieces at the
-    knots with the numbers `cuts`: where an input jumps or bends, and so often that a piece has no more than `per_piece`
-    knots.
+    each input are those of powers of the angle from the interval's `origin` [rad]. The cycle is cut into pieces at
+    `cuts`: where an input jumps or bends, and so often that a piece has no more than `per_piece` knots.
     """
 
     knots: Array
+    origins: Array
     inputs: dict[str, Field]
     cuts: Array
     per_piece: int
 
+    def rows(self, angle: str) -> tuple[Row, ...]:
+        """Return the rows that make the inputs from the angle on a piece, by its name, and numbers of the piece."""
+        rows = []
+        for name, field in self.inputs.items():
+            terms = field.values.shape[1]
+            numbers = chain.from_iterable((_origin(nth), *_terms(name, nth, terms)) for nth in range(self.per_piece))
+            function = crank_angle.polynomial_on_piece if self.per_piece == 1 else crank_angle.cubics_on_piece
+            rows.append(Row(function, (name,), (angle, *numbers)))
+        return tuple(rows)
+
     def on_pieces(self, start: Array, length: Array, places: Mapping[str, Array]) -> dict[str, Array]:
-        """Return the numbers of the cubics on pieces of designs at these places, by `names_on_piece`.
+        """Return the numbers of pieces of designs at these places, by the names that `rows` take.
 
         Pieces start at any angle and have any length between two cuts [degree]; their angles are measured from the
         middle [rad].
         """
         count, period = len(self.knots) - 1, self.knots[-1] - self.knots[0]
-        knots = np.append(self.knots, self.knots[1:] + period)
+        knots, origins = np.append(self.knots, self.knots[1:] + period), np.append(self.origins, self.origins + period)
         start = self.knots[0] + np.mod(start - self.knots[0] + ROUNDED, period) - ROUNDED
         first = np.searchsorted(knots, start + ROUNDED, side="right") - 1
         last = np.searchsorted(knots, start + length - ROUNDED, side="left") - 1
@@ -74,48 +85,46 @@ class Polynomials(NamedTuple):
         numbers = {}
         for nth in range(self.per_piece):
             interval = np.minimum(first + nth, last)
-            away = np.radians(knots[interval] - (start + 0.5 * length))
-            numbers[_knot(nth)] = np.where((first + nth > last) & (nth > 0), np.inf, away)
+            away = np.radians(origins[interval] - (start + 0.5 * length))
+            numbers[_origin(nth)] = np.where((first + nth > last) & (nth > 0), np.inf, away)
             for name, field in self.inputs.items():
                 terms = np.moveaxis(field.values, 1, -1)[(interval % count, *at_designs[name])]
-                numbers |= zip(_terms(name, nth), terms.T, strict=True)
+                numbers |= zip(_terms(name, nth, terms.shape[1]), terms.T, strict=True)
         return numbers
 
 
-def names_on_piece(name: str, per_piece: int) -> tuple[str, ...]:
-    """Return the names of the numbers that state an input on a piece: for each knot its angle and coefficients."""
-    return tuple(chain.from_iterable((_knot(nth), *_terms(name, nth)) for nth in range(per_piece)))
+def _origin(nth: int) -> str:
+    return f"origin_{nth}"
 
 
-def _knot(nth: int) -> str:
-    return f"knot_{nth}"
-
-
-def _terms(name: str, nth: int) -> tuple[str, ...]:
-    return tuple(f"{name}_{nth}_{power}" for power in range(TERMS))
+def _terms(name: str, nth: int, count: int) -> tuple[str, ...]:
+    return tuple(f"{name}_{nth}_{power}" for power in range(count))
 
 
 @lru_cache(maxsize=2)
 def polynomials(scene: Scene) -> Polynomials | None:
-    """Return the inputs of a scene that change over the angle as cubics; None where they are none.
+    """Return the inputs of a scene that change over the angle as polynomials; None where they are none.
 
-    That is so of functions, of the pressure of ideal cycles, and where the speed of the crank changes.
+    That is so of functions that jump or bend elsewhere than at their breaks, of the pressure of ideal cycles, and where
+    the speed of the crank changes.
     """
     tables = [array for array in scene.arrays.values() if "theta2" in array.coords]
-    if scene.steady or scene.functions or scene.changes_speed or not tables:
+    if scene.steady or scene.changes_speed or not (tables or scene.functions):
         return None
-    knots = _knots(scene, tables)
-    steps = np.diff(knots)
-    if steps.min() < SHORTEST:
+    knots = _knots_of_functions(scene, tables) if scene.functions else _knots(scene, tables)
+    if knots is None or np.diff(knots).min() < SHORTEST:
         return None
-    angles = knots[:-1, None] + steps[:, None] * np.append(NODES, CHECKED)
-    grid = scene.grid(np.mod(angles.ravel(), scene.period))
+    terms, cuts = (smooth.TERMS, [*range(len(knots) - 1)]) if scene.functions else (CUBIC, _cuts(scene, knots))
+    half, per_piece = 0.5 * np.diff(knots), int(np.diff(cuts, append=len(knots) - 1).max())
+    middle, places = knots[:-1] + half, np.append(smooth.chebyshev(terms), CHECKED)
+    grid = scene.grid(np.mod((middle[:, None] + half[:, None] * places).ravel(), scene.period))
+    from_middle = 0.0 if per_piece == 1 else 1.0  # where the origin is, of which there may be several on a piece
     changing = {name: field for name, field in scene.at(grid).inputs.fields.items() if grid.dim in field.dims}
-    inputs = {name: _cubics(field, grid.dim, np.radians(steps)) for name, field in changing.items()}
+    places, half_lengths = places + from_middle, np.radians(half)
+    inputs = {name: _polynomials(field, grid.dim, places, half_lengths) for name, field in changing.items()}
     known = {name: field for name, field in inputs.items() if field is not None}
-    cuts = _cuts(scene, knots)
-    per_piece = int(np.diff(cuts, append=len(steps)).max())
-    return Polynomials(knots, known, knots[cuts], per_piece) if len(known) == len(inputs) else None
+    origins = middle - from_middle * half
+    return Polynomials(knots, origins, known, knots[cuts], per_piece) if len(known) == len(inputs) else None
 
 
 def _knots(scene: Scene, tables: list[xr.DataArray]) -> Array:
@@ -124,13 +133,19 @@ def _knots(scene: Scene, tables: list[xr.DataArray]) -> Array:
     for table in tables:
         period = period_of(table, scene.mechanism.period)
         every.append(np.add.outer(np.arange(0.0, scene.period, period), np.mod(table["theta2"].values, period)).ravel())
-    knots = np.unique(np.concatenate(every))
-    knots = np.append(knots, knots[0] + scene.period)
-    parts = [math.ceil(step / LONGEST) for step in np.diff(knots)]
-    divided = [
-        np.linspace(start, end, n, endpoint=False) for start, end, n in zip(knots[:-1], knots[1:], parts, strict=True)
-    ]
-    return np.append(np.concatenate(divided), knots[-1])
+    return smooth.divided(np.concatenate(every), scene.period, LONGEST)
+
+
+def _knots_of_functions(scene: Scene, tables: list[xr.DataArray]) -> Array | None:
+    """Return angles between which the functions of a scene are polynomials, those of its tables among them."""
+    if not scene.quick.all:
+        return None
+    rules = {path: Rule(scene.numbers[path][1], over_angle=True) for path in scene.functions}
+    functions = [partial(called, path, function, rules[path]) for path, function in scene.functions.items()]
+    known = _knots(scene, tables)[:-1] if tables else np.empty(0)
+    breaks = [angle for load in scene.loads for angle in getattr(load, "breaks", ())]
+    breaks = np.add.outer(np.arange(0.0, scene.period, scene.mechanism.period), breaks).ravel()
+    return smooth.smooth_knots(functions, known, breaks, scene.quick.angles, scene.period)
 
 
 def _cuts(scene: Scene, knots: Array) -> list[int]:
@@ -145,15 +160,16 @@ def _cuts(scene: Scene, knots: Array) -> list[int]:
     return cuts
 
 
-def _cubics(field: Field, dim: str, steps: Array) -> Field | None:
-    """Return the coefficients of an input from its samples in each interval; None where it is no cubic there."""
-    axis = field.dims.index(dim)
+def _polynomials(field: Field, dim: str, places: Array, half_lengths: Array) -> Field | None:
+    """Return the coefficients of an input from its samples at places of each interval, in half lengths from its origin;
+    None where the polynomial through the others misses the last sample."""
+    terms, axis = len(places) - 1, field.dims.index(dim)
     values = np.moveaxis(field.values, axis, 0)
-    values = values.reshape(len(steps), TERMS + 1, *values.shape[1:])
-    coefficients = np.tensordot(values[:, :TERMS], TO_COEFFICIENTS, axes=(1, 1))
-    error = values[:, TERMS] - coefficients @ CHECKED ** np.arange(TERMS)
+    values = np.moveaxis(values.reshape(len(half_lengths), terms + 1, *values.shape[1:]), 1, -1)
+    through = smooth.coefficients(places[:-1], values[..., :-1])
+    error = values[..., -1] - through @ places[-1] ** np.arange(terms)
     if not np.all(np.abs(error) <= ROUNDING * np.max(np.abs(values))):
         return None
-    lengths = steps.reshape(-1, *[1] * (coefficients.ndim - 1))
-    coefficients = np.moveaxis(coefficients / lengths ** np.arange(TERMS), -1, 1)
-    return Field(tuple(name for name in field.dims if name != dim), np.ascontiguousarray(coefficients))
+    lengths = half_lengths.reshape(-1, *[1] * (through.ndim - 1))
+    through = np.moveaxis(through / lengths ** np.arange(terms), -1, 1)
+    return Field(tuple(name for name in field.dims if name != dim), np.ascontiguousarray(through))

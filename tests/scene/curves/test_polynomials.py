@@ -8,8 +8,8 @@ import pytest
 import xarray as xr
 
 import linksweep as ls
-from linksweep.physics.closures.crank_angle import angle_on_piece, cubic_on_piece
-from linksweep.scene.curves.polynomials import names_on_piece, polynomials
+from linksweep.physics.closures.crank_angle import angle_on_piece
+from linksweep.scene.curves.polynomials import polynomials
 from linksweep.scene.pairs import places_of
 
 pytestmark = pytest.mark.filterwarnings("ignore::linksweep.OvershootWarning")
@@ -44,20 +44,21 @@ def test_cubics_on_pieces_are_the_load(kind, turns):
     start, length = first + 0.25 * (last - first), 0.7 * (last - first)
     places = places_of(loaded.at_one_angle.inputs.sizes, designs)
     numbers = known.on_pieces(start - loaded.period, length, places)
-    of_load = [numbers[name] for name in names_on_piece("load1_torque", known.per_piece)]
+    (row,) = known.rows("angle")
+    of_load = [numbers[name] for name in row.inputs[1:]]
     for share in (0.01, 0.3, 0.8, 0.99):
         away = (share - 0.5) * length
         middle, place = (np.tan(np.radians(0.5 * x - 20.0)) for x in (0.0 * away, away))
         angle = angle_on_piece(place, middle)
         np.testing.assert_allclose(angle, np.radians(away), atol=1e-15)
-        values = [cubic_on_piece(*map(float, (angle[k], *(row[k] for row in of_load)))) for k in range(len(angle))]
+        values = [row.function(*map(float, (angle[k], *(x[k] for x in of_load)))) for k in range(len(angle))]
         curve = loaded.curves["loads[1].torque"].periodic(start + share * length)
         np.testing.assert_allclose(values, curve[np.arange(len(angle)), designs], atol=2e-12)
 
 
 def test_what_is_no_cubic_is_none():
-    """Functions, changing speeds, ideal cycles; and scenes without loads over the angle."""
-    assert polynomials(scene(ls.Load("rocker", torque=lambda theta2: np.cos(np.radians(theta2))))) is None
+    """Functions that bend, changing speeds, ideal cycles; and scenes without loads over the angle."""
+    assert polynomials(scene(ls.Load("rocker", torque=lambda theta2: abs(np.cos(np.radians(theta2 + 10.3)))))) is None
     assert polynomials(scene(ls.Load("rocker", torque=1.0))) is None
     speed = 10.0 + 0.1 * table()
     assert polynomials(scene(ls.Load("rocker", torque=table()), omega2=speed)) is None
@@ -102,3 +103,53 @@ def test_status_and_samples_of_tables_are_those_of_other_loads():
     peaks = ls.peaks(mixed, of=["T12", "T12_samples"])
     assert peaks.status.values.tolist() == [0, 3, 2]
     assert math.isnan(peaks.T12_peak[2]) and peaks.T12_samples[0] > 100
+
+
+def jumping(theta2):
+    """Jump at a break, and where they begin anew after two turns."""
+    angle = np.radians(theta2)
+    return np.where(theta2 % 720.0 < 77.7, 3.0, np.cos(0.5 * angle) + np.sin(6.0 * angle))
+
+
+def test_smooth_functions_are_polynomials_between_their_breaks():
+    """Against the function itself, at both sides of the break too; and a multiple of it of each design."""
+    loaded = scene(ls.Load("rocker", torque=jumping, breaks=[77.7]))
+    known = polynomials(loaded)
+    assert loaded.period == 720.0 and known.per_piece == 1 and 77.7 in known.cuts
+    (row,) = known.rows("angle")
+    start, length = known.knots[:-1], np.diff(known.knots)
+    numbers = known.on_pieces(start, length, {})
+    for share in (1e-9, 0.3, 0.62, 1.0 - 1e-9):
+        values = row.function(np.radians((share - 0.5) * length), *(numbers[name] for name in row.inputs[1:]))
+        np.testing.assert_allclose(values, jumping(start + share * length), atol=2e-12)
+    bore = xr.DataArray([0.05, 0.06, 0.07], dims="design")
+    engine = ls.SliderCrank(ls.Link(0.04, 1.0, 0.0), ls.Link(0.14, 1.0, 0.0), slider_mass=0.5)
+    gas = ls.GasPressure(bore=bore, pressure=lambda theta2: 2e5 + 1e5 * np.cos(np.radians(theta2)))
+    of_gas = polynomials(ls.Scene(engine, omega2=300.0, loads=[gas])).inputs["load1_force_x"]
+    assert of_gas.dims == ("design",)
+    at_middles = of_gas.values[:, 0]
+    np.testing.assert_allclose(at_middles, np.outer(at_middles[:, 0], (bore / 0.05) ** 2), rtol=1e-12)
+
+
+def test_functions_without_declared_breaks_or_with_narrow_bumps_are_searched_along_paths():
+    for torque in (
+        lambda theta2: jumping(theta2 + 20.0),
+        lambda theta2: np.exp(-((theta2 % 360.0 - 180.0) ** 2) / 1e-4),
+    ):
+        assert polynomials(scene(ls.Load("rocker", torque=torque))) is None
+
+
+def test_peaks_with_functions_reach_the_densest_samples():
+    """With a table besides, too; peaks of a constant load are those that a function of the same value has."""
+    bent = table().isel(design=0).assign_attrs(interpolation="linear")
+    function = ls.Load("rocker", torque=jumping, breaks=[77.7])
+    for loads in ([function], [function, ls.Load("coupler", torque=bent)]):
+        loaded = replace(scene(function), loads=loads, gravity=(0.0, -9.81))
+        assert polynomials(loaded) is not None
+        peaks, dense = ls.peaks(loaded, of=["F12", "T12"]), ls.peaks(loaded, of=["F12", "T12"], theta2=30_000)
+        assert (peaks.status == 0).all()
+        for name in ("F12_peak", "T12_peak"):
+            excess = (peaks[name] - dense[name]) / dense[name]
+            assert excess.min() > -1e-10 and excess.max() < 1e-3
+    same = (scene(ls.Load("rocker", torque=torque)) for torque in (7.0, lambda theta2: 0.0 * theta2 + 7.0))
+    xr.testing.assert_allclose(*(ls.peaks(each, of="T12").T12_peak for each in same), rtol=1e-12)
