@@ -87,11 +87,13 @@ def _inputs_at(scene: Scene, angles: Array, loaded: bool) -> tuple[Inputs, Grid,
 
 def in_period(angle: Array, period: float) -> Array:
     """Return angles reduced to [0, period)."""
-    angle = np.asarray(angle, dtype=float) + 0.0  # never -0
-    folded = np.where(angle < 0.0, angle + period, np.where(angle < period, angle, angle - period))
+    folded = np.array(angle, dtype=float)
+    folded += 0.0  # never -0
+    folded += np.multiply(folded < 0.0, period)
+    folded -= np.multiply(folded >= period, period)
     outside = ~((folded >= 0.0) & (folded < period))
     if outside.any():
-        within = np.mod(angle[outside], period)  # slow
+        within = np.mod(np.asarray(angle, dtype=float)[outside], period) + 0.0  # slow
         folded[outside] = np.where(within < period, within, 0.0 * within)  # mod rounds -1e-20 up to the period itself
     return folded
 

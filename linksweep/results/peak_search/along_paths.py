@@ -24,8 +24,9 @@ NODES = 8
 """Samples near the end of an arc from which a signal is extrapolated to the end."""
 PROBE, LEAST_PROBE = 0.025, 1e-5
 """Distance from the end, as part of a step and at least, of the sample that shows whether a signal is unbounded."""
-NEAR_PERIOD = 1e-6
-"""Distance from the end of a period within which a peak counts as at its start [degree]: less than its accuracy."""
+NEAR_PERIOD = 5e-6
+"""Distance from the end of a period within which a peak counts as at its start [degree]: half of what its angle may err
+by."""
 
 PathsOf = Callable[[Any], Paths]
 """A function that returns the paths of a group of designs."""
@@ -58,7 +59,8 @@ def with_unknown_bound(peak: SignalPeak) -> SignalPeak:
 def angle_in_period(angle: Array, period: float) -> Array:
     """Return the angles of peaks in [0, period); one within rounding of the period becomes 0."""
     folded = in_period(angle, period)
-    return np.where(folded < period - NEAR_PERIOD, folded, 0.0 * folded)
+    folded[folded >= period - NEAR_PERIOD] = 0.0
+    return folded
 
 
 def put(peak: SignalPeak, group: Any, numbers: tuple[Array, ...]) -> None:
