@@ -47,7 +47,7 @@ class Size:
     population: int = 1000
     largest_angles: int = 10_000_000
     largest_designs: int = 1_000_000
-    requests: int = 4
+    requests: int = 7
 
 
 FULL = Size()

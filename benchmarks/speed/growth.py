@@ -82,6 +82,9 @@ REQUESTS = {
     "omega3, omega4": partial(ls.sweep, scene(GENERAL), 72, of=["omega3", "omega4"]),
     "the nine unknowns": partial(ls.sweep, scene(GENERAL), 72, of=NINE),
     "kinematics too, two loads": partial(ls.sweep, scene(GENERAL, LOADS), 72),
+    "peaks of 72 samples": partial(ls.peaks, scene(GENERAL), theta2=72),
+    "peaks of 72 samples, 30 designs": partial(ls.peaks, scene(batch(30, *ALL)), theta2=72),
+    "nine by solver='dense'": partial(ls.sweep, scene(GENERAL), 72, of=NINE, solver="dense"),
     "exact peaks": partial(ls.peaks, scene(GENERAL)),
 }
 

@@ -20,8 +20,8 @@ from linksweep.base.memory import require_memory
 from linksweep.engine.blocks import block as new_block
 from linksweep.engine.interpreter import evaluate as interpreter
 from linksweep.engine.kernel import reduce
-from linksweep.engine.kernel.compile import SIGNATURE, compiled
-from linksweep.engine.kernel.fuse import REDUCTIONS_SOURCE, fuse
+from linksweep.engine.kernel.compile import compiled
+from linksweep.engine.kernel.fuse import fuse
 from linksweep.engine.kernel.side_by_side import fits_side_by_side, parity
 from linksweep.engine.kernel.vectors import LANES
 from linksweep.engine.kernel.writer import Reduction, Writer
@@ -224,9 +224,7 @@ def _execute(
     streamed = 8 * block_rows * room >= STREAMED_FROM
     if streamed:  # whole vectors, each of whole lines of the caches
         samples = room = -(-room // LANES) * LANES
-    kernel = compiled(
-        fused.source, REDUCTIONS_SOURCE if ready.reductions else "", SIGNATURE, "block" if streamed else ""
-    )
+    kernel = compiled(fused.source, "block" if streamed else "")
     parameters, parameter_at = flat([ordered(plan, inputs[node.value]) for node in fused.parameters])
     missing = room - len(grid.angles)
     profiles = np.pad(profiles, ((0, 0), (0, missing)), mode="edge") if missing else profiles
@@ -239,8 +237,9 @@ def _execute(
         apart = room + LANES if room % 512 == 0 else room  # else all rows would compete for the same cache sets
         scratch, values = np.empty((fused.scratch_rows, apart)), new_block(1, fused.value_count)[0]
         kernel(
-            first * unit, min(last * unit, length), samples, layout.sizes, parameters, parameter_at, profiles,
-            profile_at, block, block_at, single, single_at, scratch, values, grid.angles, np.empty(reduce.WORK),
+            first * unit, min(last * unit, length), samples, room, apart, layout.sizes, parameters, parameter_at,
+            profiles, profile_at, block, block_at, single, single_at, scratch, values, grid.angles,
+            np.empty(reduce.WORK),
         )  # fmt: skip
 
     workers = 1 + _samples(plan, grid, sizes) // SAMPLES_PER_THREAD

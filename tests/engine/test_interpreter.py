@@ -81,7 +81,7 @@ def test_kept_code_is_used_again(tmp_path, monkeypatch):
     monkeypatch.setattr(cache, "cache_folder", lambda: tmp_path)
     machine._function.__wrapped__()
     (kept,) = tmp_path.iterdir()
-    monkeypatch.setattr(machine_code, "_compiled", lambda *_: pytest.fail("compiled again"))
+    monkeypatch.setattr(machine_code, "_optimised", lambda *_: pytest.fail("compiled again"))
     machine._function.__wrapped__()
     kept.write_bytes(kept.read_bytes()[:-1])
     with pytest.raises(pytest.fail.Exception, match="compiled again"):

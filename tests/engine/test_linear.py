@@ -1,6 +1,5 @@
 """Square systems side by side: exact references, equal bits interpreted and compiled, no lane that disturbs another."""
 
-import inspect
 import re
 from fractions import Fraction
 
@@ -10,8 +9,8 @@ from test_vectorised import width
 
 from linksweep.base import cache
 from linksweep.engine import run
-from linksweep.engine.kernel.compile import compiled_functions
-from linksweep.engine.linear import elimination, solve, vectors
+from linksweep.engine.kernel import machine_code
+from linksweep.engine.linear import elimination, solve
 from linksweep.engine.linear.solve import Structure
 
 EPS = 2.0**-52
@@ -153,10 +152,15 @@ def test_rows_are_subtracted_in_whole_registers(monkeypatch):
     """Products and differences of the elimination, eight or four at a time."""
     registers = width()
     monkeypatch.setattr(cache, "cache_folder", lambda: None)
-    compiled = compiled_functions.__wrapped__(inspect.getsource(elimination), vectors.__name__)["solve"]
-    work, matrix = np.empty((elimination.WORK_ROWS, 12, 8)), np.empty((3, 4, 8))
-    compiled(np.array(sources(even(3, 8, 9)))[:, None], *structure(3), matrix, work, np.empty((3, 1, 8)))
-    (assembly,) = compiled.inspect_asm().values()
+    texts, optimised = [], machine_code._optimised
+
+    def shown(target, *what):
+        texts.append(target.emit_assembly(optimised(target, *what)))
+        return optimised(target, *what)
+
+    monkeypatch.setattr(machine_code, "_optimised", shown)
+    assert solve.Solver("solve").compiled
+    (assembly,) = texts
     for operation in ("mul", "sub", "div"):
         assert re.search(rf"\bv{operation}pd\s.*%{registers}", assembly)
         assert not re.search(rf"\bv{operation}sd\s", assembly)

@@ -6,6 +6,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
+from linksweep.engine.kernel.machine_code import address
 from linksweep.engine.kernel.translate import translated
 
 MOST = 5
@@ -123,6 +124,11 @@ def test_an_array_of_another_kind_is_refused(wrong):
     compiled = translated(arithmetic, ("f8[:]", "i8", "f8[:]"))
     with pytest.raises(TypeError, match="no array of kind f8"):
         compiled(wrong, 1, np.zeros(5))
+
+
+@pytest.mark.parametrize("array", [np.zeros(3), np.arange(24.0).reshape(4, 6)[1:, 2:], np.empty((0, 2))])
+def test_an_array_lies_where_numpy_says(array):
+    assert address(array) == array.__array_interface__["data"][0]
 
 
 def with_a_list(x):

@@ -14,76 +14,51 @@ import pickle
 import sys
 from collections.abc import Callable, Mapping
 from functools import cache, partial
-from types import FunctionType, ModuleType
+from types import ModuleType
 from typing import Any
 
 from linksweep.base.cache import forget, keep, recall
 from linksweep.engine.kernel import vectors
+from linksweep.engine.kernel.machine_code import INTEGER, MachineCode
 
-SETTINGS: dict[str, Any] = {"error_model": "numpy", "nogil": True, "_nrt": False, "no_cfunc_wrapper": True}
+SETTINGS: dict[str, Any] = {"error_model": "numpy", "nogil": True, "_nrt": False}
 """IEEE division, no GIL, and no fast-math at all: contracted or reordered sums would change bits. Kernels allocate no
 arrays, so numba's reference counting (`_nrt`) is off."""
 
-SIGNATURE = (
-    "void(i8, i8, i8, i8[::1], f8[::1], i8[::1], f8[:, ::1], i8[::1], "
-    "f8[:, ::1], i8[::1], f8[::1], i8[::1], f8[:, ::1], f8[::1], f8[::1], f8[::1])"
-)
+PLACES, FLOATS = "i8*", "f8*"
+KINDS = (*[INTEGER] * 5, PLACES, FLOATS, PLACES, FLOATS, PLACES, FLOATS, PLACES, FLOATS, PLACES, *[FLOATS] * 4)
+"""Arguments of kernels (`engine.kernel.writer`)."""
+TYPES = {INTEGER: "i8", PLACES: "CPointer(i8)", FLOATS: "CPointer(f8)"}
+"""Their types. numba takes four times as long to compile a function that is called with Python's arrays."""
 
 
 @cache
-def compiled(kernel_source: str, helpers_source: str = "", signature: str = SIGNATURE, streamed: str = "") -> Callable:
+def compiled(kernel_source: str, streamed: str = "", kinds: tuple[str, ...] = KINDS) -> MachineCode:
     """Return the kernel of this source as machine code: of this process, from the user's cache, or compiled now.
 
     It writes the array that is `streamed` past the caches.
     """
-    context = f"{signature} {helpers_source} {vectors.SOURCE} {vectors.width()} {streamed}"
-    vectorised = {"vectorised": partial(vectors.intrinsic, streamed=streamed)}
-    kernel = _jitted(kernel_source, {**vectorised, **compiled_functions(helpers_source)}, context)["kernel"]
-    kernel.compile(signature)
-    kernel.disable_compile()
-    return kernel
+    from numba.core.ccallback import CFunc
+    from numba.core.sigutils import normalize_signature
+
+    context = f"{kinds} {vectors.SOURCE} {vectors.width()} {streamed}"
+    module = _module(kernel_source, {"vectorised": partial(vectors.intrinsic, streamed=streamed)}, context)
+    signature = normalize_signature(f"void({', '.join(TYPES[kind] for kind in kinds)})")
+    callback: Any = CFunc(module.kernel, signature, {}, SETTINGS)
+    callback._cache = KernelCache(f"{module.__name__}.kernel")
+    callback.compile()
+    return MachineCode(callback, callback.address, kinds)
 
 
-@cache
-def compiled_functions(source: str, emitted: str = "") -> Mapping[str, Any]:
-    """Return the functions of a module of plain functions by name, each compiled on its first call.
-
-    `emitted` is the source of what the package itself teaches numba to compile in them.
-    """
-    return _jitted(source, {}, emitted) if source else {}
-
-
-def _jitted(text: str, helpers: Mapping[str, Callable], context: str = "") -> dict[str, Any]:
-    """Run a module's text with its helpers, and hand its functions to numba; its name covers all that enters their
-    machine code."""
+def _module(text: str, helpers: Mapping[str, Callable], context: str) -> Any:
+    """Run a module's text with its helpers; its name covers all that enters the machine code of its functions."""
     import numba
 
     name = f"kernel_{_digest(f'{numba.__version__} {sys.version} {SETTINGS} {context} {text}')}"
     module = sys.modules[name] = ModuleType(name)  # where a cached kernel looks for it
     vars(module).update(helpers)
     exec(compile(text, name, "exec"), vars(module))
-    functions = {key: value for key, value in vars(module).items() if _is_function_of(module, value)}
-    jitted = {key: _dispatcher(function) for key, function in functions.items()}
-    for key, function in jitted.items():
-        function._cache = KernelCache(f"{name}.{key}")
-    vars(module).update(jitted)  # so that they call each other compiled
-    return jitted
-
-
-def _dispatcher(function: FunctionType) -> Any:
-    """Return a function as numba compiles it: with NUMBA_DISABLE_JIT=1 set, too, for its code is no Python to debug."""
-    import numba
-
-    config: Any = numba.config
-    disabled, config.DISABLE_JIT = config.DISABLE_JIT, 0
-    try:
-        return numba.njit(**SETTINGS)(function)
-    finally:
-        config.DISABLE_JIT = disabled
-
-
-def _is_function_of(module: ModuleType, value: object) -> bool:
-    return isinstance(value, FunctionType) and value.__globals__ is vars(module)
+    return module
 
 
 def _digest(text: str) -> str:

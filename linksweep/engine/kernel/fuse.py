@@ -2,14 +2,9 @@
 
 from __future__ import annotations
 
-import inspect
-
-from linksweep.engine.kernel import reduce
 from linksweep.engine.kernel.side_by_side import SideBySideWriter
 from linksweep.engine.kernel.writer import Reduction, Writer
 from linksweep.engine.trace.plan import Plan
-
-REDUCTIONS_SOURCE = inspect.getsource(reduce)
 
 
 def fuse(plan: Plan, reductions: tuple[Reduction, ...], of_profiles: tuple[int, ...] | None = None) -> Writer:

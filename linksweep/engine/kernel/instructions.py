@@ -23,17 +23,13 @@ SOURCE = inspect.getsource(sys.modules[__name__]) + inspect.getsource(arctangent
 
 
 def intrinsic(emit: Callable[..., None], parameters: Iterable[str]) -> Callable:
-    """Return what `emit(builder, *arguments)` writes as a function of these parameters that numba-compiled ones call.
-
-    An argument is a value of LLVM, or of an array a struct with `data`, where it starts, and `shape`.
-    """
+    """Return what `emit(builder, *arguments)` writes as a function that numba-compiled ones call."""
     import numba.extending
     from numba.core import types
 
     def typed(_typing_context: Any, *kinds: Any) -> tuple[Any, Callable]:
         def write(context: Any, builder: Any, _signature: Any, values: Any) -> Any:
-            arrays = [context.make_array(kind) if isinstance(kind, types.Array) else None for kind in kinds]
-            emit(builder, *(of(context, builder, x) if of else x for of, x in zip(arrays, values, strict=True)))
+            emit(builder, *values)
             return context.get_dummy_value()
 
         return types.void(*kinds), write

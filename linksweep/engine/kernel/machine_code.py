@@ -3,7 +3,8 @@
     emit(builder, *arguments)       writes the body of a function; it may return an integer
 
 Kinds of arguments are "i8", an integer, and "f8[:]", "f8[:, :]", "i8[:]", …: arrays of doubles or integers that lie in
-memory without gaps. Of an array, its address and the lengths of its axes are passed.
+memory without gaps. Of an array, its address and the lengths of its axes are passed; of "i8*" and "f8*", arrays of any
+number of axes, the address alone.
 """
 
 from __future__ import annotations
@@ -26,6 +27,12 @@ SOURCE = inspect.getsource(sys.modules[__name__]) + instructions.SOURCE
 """All that enters the machine code besides what is asked for."""
 
 
+NUMBERS = {"f8": np.dtype(np.float64), "i8": np.dtype(np.int64)}
+HEADER, _integer_at = object.__basicsize__, ctypes.c_int64.from_address
+"""The address of an array's memory follows the header that all objects have: numpy's C interface promises so, and
+`array.ctypes` takes ten times as long."""
+
+
 class Array(NamedTuple):
     """An array in machine code: where it starts, and the lengths of its axes."""
 
@@ -36,37 +43,38 @@ class Array(NamedTuple):
 class MachineCode:
     """A function of machine code: called from Python, or by other machine code that has its `address`.
 
-    `function` takes what is passed: of an array its address and the lengths of its axes.
+    `function` takes what is passed: of an array its address and the lengths of its axes. The code lives as long as its
+    `owner`.
     """
 
-    def __init__(self, engine: Any, symbol: str, kinds: tuple[str, ...]) -> None:
-        self.engine, self.kinds = engine, kinds  # the code lives as long as the engine
-        self.address = engine.get_function_address(symbol)
+    def __init__(self, owner: Any, address: int, kinds: tuple[str, ...]) -> None:
+        self.owner, self.address = owner, address
+        self.forms = [(kind, None if kind == INTEGER else NUMBERS[kind[:2]], axes(kind)) for kind in kinds]
         passed = sum(1 + axes(kind) for kind in kinds)
-        self.function = ctypes.CFUNCTYPE(ctypes.c_int64, *[ctypes.c_int64] * passed)(self.address)
+        self.function = ctypes.CFUNCTYPE(ctypes.c_int64, *[ctypes.c_int64] * passed)(address)
 
     def __call__(self, *arguments: Any) -> int:
         passed: list[int] = []
-        for kind, argument in zip(self.kinds, arguments, strict=True):
-            if kind == INTEGER:
+        for argument, (kind, numbers, axes) in zip(arguments, self.forms, strict=True):
+            if numbers is None:
                 passed.append(argument)
-            else:
-                memory = argument.__array_interface__
-                if memory["strides"] or memory["typestr"][1:] != kind[:2] or argument.ndim != axes(kind):
-                    raise TypeError(f"{argument.dtype}, {argument.shape}, {argument.strides}: no array of kind {kind}")
-                passed.append(memory["data"][0])
-                passed += memory["shape"]
+                continue
+            if argument.dtype != numbers or not argument.flags.c_contiguous or axes not in (0, argument.ndim):
+                raise TypeError(f"{argument.dtype}, {argument.shape}, {argument.strides}: no array of kind {kind}")
+            passed.append(address(argument))
+            if axes:
+                passed += argument.shape
         return self.function(*passed)
 
 
 def axes(kind: str) -> int:
-    """Return the number of axes of an array of this kind; 0 for an integer."""
+    """Return the number of axes of an array of this kind; 0 for an integer or an address."""
     return kind.count(":")
 
 
 def address(array: np.ndarray) -> int:
     """Return where an array starts in memory."""
-    return array.__array_interface__["data"][0]
+    return _integer_at(id(array) + HEADER).value
 
 
 def machine_code(emit: Callable[..., Any], kinds: tuple[str, ...], text: str) -> MachineCode:
@@ -83,12 +91,12 @@ def machine_code(emit: Callable[..., Any], kinds: tuple[str, ...], text: str) ->
     name = f"{emit.__name__.strip('_')}_{hashlib.sha256(made_of.encode()).hexdigest()[:24]}"
     code = recall(name)
     if code is None:
-        code = _compiled(binding, target, emit, name, kinds)
+        code = target.emit_object(_optimised(target, emit, name, kinds))
         keep(name, code)
     engine = binding.create_mcjit_compiler(binding.parse_assembly(""), target)
     engine.add_object_file(binding.ObjectFileRef.from_data(code))
     engine.finalize_object()
-    return MachineCode(engine, name, kinds)
+    return MachineCode(engine, engine.get_function_address(name), kinds)
 
 
 def _processor(binding: Any) -> tuple[str, str]:
@@ -99,25 +107,32 @@ def _processor(binding: Any) -> tuple[str, str]:
 
 
 def write_call(builder: Any, function: Any, arguments: tuple[Any, ...]) -> None:
-    """Write the call of machine code by its address, an integer."""
+    """Write the call of a function of the module, or of machine code by its address, an integer."""
     from llvmlite import ir
 
     passed: list[Any] = []
     for argument in arguments:
         passed += [argument.data, *argument.shape] if isinstance(argument, Array) else [argument]
-    kind = ir.FunctionType(ir.IntType(64), [x.type for x in passed])
-    builder.call(builder.inttoptr(function, kind.as_pointer()), passed)
+    if not isinstance(function, ir.Function):
+        kind = ir.FunctionType(ir.IntType(64), [x.type for x in passed])
+        function = builder.inttoptr(function, kind.as_pointer())
+    builder.call(function, passed)
 
 
-def _compiled(binding: Any, target: Any, emit: Callable[..., Any], name: str, kinds: tuple[str, ...]) -> bytes:
-    module = binding.parse_assembly(str(_module(emit, name, kinds)))
+def _optimised(target: Any, emit: Callable[..., Any], name: str, kinds: tuple[str, ...]) -> Any:
+    """Return the module of a function for a target."""
+    from llvmlite import binding, ir
+
+    new_function(written := ir.Module(), emit, name, kinds)
+    module = binding.parse_assembly(str(written))
     module.verify()
     passes = binding.create_pass_builder(target, binding.create_pipeline_tuning_options(speed_level=2))
     passes.getModulePassManager().run(module, passes)
-    return target.emit_object(module)
+    return module
 
 
-def _module(emit: Callable[..., Any], name: str, kinds: tuple[str, ...]) -> Any:
+def new_function(module: Any, emit: Callable[..., Any], name: str, kinds: tuple[str, ...]) -> Any:
+    """Write a function into a module; `emit` writes its body."""
     from llvmlite import ir
 
     integer, double = ir.IntType(64), ir.DoubleType()
@@ -125,7 +140,6 @@ def _module(emit: Callable[..., Any], name: str, kinds: tuple[str, ...]) -> Any:
     passed: list[Any] = []
     for kind in kinds:
         passed += [integer] if kind == INTEGER else [starts[kind[:2]], *[integer] * axes(kind)]
-    module = ir.Module()
     function = ir.Function(module, ir.FunctionType(integer, passed), name)
     builder, values = ir.IRBuilder(function.append_basic_block()), iter(function.args)
     arguments: list[Any] = []
@@ -133,4 +147,4 @@ def _module(emit: Callable[..., Any], name: str, kinds: tuple[str, ...]) -> Any:
         value = next(values)
         arguments.append(value if kind == INTEGER else Array(value, tuple(next(values) for _ in range(axes(kind)))))
     builder.ret(emit(builder, *arguments) or integer(0))
-    return module
+    return function

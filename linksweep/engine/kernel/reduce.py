@@ -1,6 +1,9 @@
-"""Reduce rows to single numbers, for peaks and means: plain Python that numba compiles and that also runs as is."""
+"""Reduce rows to single numbers, for peaks and means: plain Python that is translated and that also runs as is."""
 
 import math
+
+from linksweep.engine.kernel.instructions import REGISTER
+from linksweep.engine.kernel.translate import written_by
 
 WORK = 80
 """Numbers of working memory for a reduction: 64 lanes and 16 to fold them into."""
@@ -24,17 +27,12 @@ def least_sample(row, angles, work):
 def place_of_largest(row, work):
     """Return the position of the largest sample, the first of equals; −1 where all are NaN.
 
-    Lane k of `work` keeps the largest of samples k, k + 64, …: that compiles to vector instructions. Only the lanes
-    that hold the peak are then searched for its position.
+    Lane k of `work` keeps the largest of samples k, k + 64, …. Only the lanes that hold the peak are then searched for
+    its position.
     """
     n = len(row)
-    for k in range(64):
-        work[k] = -math.inf
     whole = n - n % 64
-    for start in range(0, whole, 64):
-        for k in range(64):
-            value = row[start + k]
-            work[k] = value if value > work[k] else work[k]
+    fill_lanes(row, whole, work)
     for k in range(n - whole):
         value = row[whole + k]
         work[k] = value if value > work[k] else work[k]
@@ -46,6 +44,28 @@ def place_of_largest(row, work):
                 if work[k] == peak:
                     at = min(at, first_in_lane(row, k, peak, at))
     return at if at < n and peak > -math.inf else -1
+
+
+def _write_fill_lanes(vectors, row, whole, work):
+    builder, places = vectors.builder, [vectors.integer(k) for k in range(0, 64, REGISTER)]
+    lanes = [vectors.slot(vectors.wide(vectors.double(-math.inf))) for _ in places]
+    with vectors.loop(vectors.integer(0), whole, 64) as (start, _):
+        for lane, place in zip(lanes, places, strict=True):
+            value, largest = vectors.load(row.data, builder.add(start, place)), builder.load(lane)
+            builder.store(builder.select(builder.fcmp_ordered(">", value, largest), value, largest), lane)
+    for lane, place in zip(lanes, places, strict=True):
+        vectors.store(builder.load(lane), work.data, place)
+
+
+@written_by(_write_fill_lanes)
+def fill_lanes(row, whole, work):
+    """Fill the lanes with the largest of their samples, of whole blocks of 64; −inf without any."""
+    for k in range(64):
+        work[k] = -math.inf
+    for start in range(0, whole, 64):
+        for k in range(64):
+            value = row[start + k]
+            work[k] = value if value > work[k] else work[k]
 
 
 def first_in_lane(row, k, peak, end):

@@ -57,18 +57,17 @@ class Extreme(Running):
         self.exceeds = exceeds
 
     def take(self, value: Any, number: Any, other: Any = None, other_number: Any = None) -> None:
-        """Take a sample and its number, or two of them."""
+        """Take a sample and its number, or two of them; of the same number, the first alone."""
         builder, value = self.builder, self._vector(value)
-        samples, far = [(value, number)], value
-        if other is not None:
-            other = self._vector(other)
-            samples.append((other, other_number))
-            far = builder.select(builder.fcmp_ordered(self.exceeds, value, other), other, value)
+        other = value if other is None else self._vector(other)
+        far = builder.select(builder.fcmp_ordered(self.exceeds, value, other), other, value)
         # or NaN, which may hide the other
         reached = builder.fcmp_unordered(f"{self.exceeds}=", self.write.load(self.memory, self.places[0]), far)
         with builder.if_then(self._any(reached), likely=False):
-            for sample, at in samples:
-                self._compare(sample, self.write.wide(builder.sitofp(at.llvm, self.write.double)))
+            self._compare(value, number.llvm)
+            if other_number is not None:
+                same = builder.icmp_signed("==", number.llvm, other_number.llvm)
+                self._compare(builder.select(same, value, other), other_number.llvm)
 
     def _any(self, conditions: Any) -> Any:
         bits = self.write.ir.IntType(self.write.width)
@@ -77,6 +76,7 @@ class Extreme(Running):
     def _compare(self, value: Any, number: Any) -> None:
         """Keep a sample in the lanes in which it exceeds the extreme so far, or equals it and comes before it."""
         builder, (extreme, at) = self.builder, self._kept()
+        number = self.write.wide(builder.sitofp(number, self.write.double))
         before = builder.and_(builder.fcmp_ordered("==", extreme, value), builder.fcmp_ordered("<", number, at))
         better = builder.or_(builder.fcmp_ordered(self.exceeds, extreme, value), before)
         self._keep(builder.select(better, value, extreme), builder.select(better, number, at))
@@ -91,7 +91,7 @@ class Extreme(Running):
             number = builder.load(place)
             missing = write.operators["<"](number, none)
             k = builder.fptosi(write.operators["where"](missing, none, number), write.integer)
-            angle = builder.load(builder.gep(angles.struct.data, [k]))
+            angle = builder.load(builder.gep(angles.data, [k]))
             builder.store(write.operators["where"](missing, nan, angle), place)
 
 

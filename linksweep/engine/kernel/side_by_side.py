@@ -104,9 +104,7 @@ class SideBySideWriter(Writer):
             self._define(2, node, self._expression(node))
         for k in own:
             self._line(2, f's{k} = running("{self.reductions[k].kind}", values, {self._summary(k)})')
-        self._samples("0, samples, samples // 2" if pairs else "0, samples", own)
-        if pairs:
-            self._samples("1, samples // 2", own, pairs=True)
+        self._samples(own, pairs)
         for k, node in own.items():
             places = ", ".join(self._at("single", 2 * k + i, node) for i in range(2))
             self._line(2, f"s{k}.write_to(single, {places}, angles)")
@@ -115,12 +113,12 @@ class SideBySideWriter(Writer):
         """Return the operations of the innermost loop on which signals depend."""
         return [node for node in self._needed(signals) if self.level(node) == self.innermost]
 
-    def _samples(self, bounds: str, own: Mapping[int, Node], pairs: bool = False) -> None:
-        """Write a loop over samples, or over pairs of them."""
-        before, work = set(self.known), self._work(own.values())
-        self._line(2, f"for j in each({bounds}):")
+    def _samples(self, own: Mapping[int, Node], pairs: bool) -> None:
+        """Write a loop over samples, or over pairs of them: of 0 and 180 degrees each with itself."""
+        work = self._work(own.values())
+        self._line(2, f"for j in each(0, {'samples // 2 + 1' if pairs else 'samples'}):")
         if pairs:
-            self._line(3, "back = samples - j")
+            self._line(3, "back = (samples - j) % samples")
         for node in _depth_first(own.values(), {*own.values(), *operands(work), *work}):
             if self.per_sample(node):
                 self._define(3, node, self._expression(node) if node in work else self._sample(node))
@@ -131,7 +129,6 @@ class SideBySideWriter(Writer):
             self.mirrored = pairs
             self._line(3, f"s{k}.take({taken}{f', {self.name(node)}, back' if pairs else ''})")
             self.mirrored = False
-        self.known = before
 
     def _mirror(self, node: Node, computed: bool) -> None:
         """Write the value of a node at −θ."""

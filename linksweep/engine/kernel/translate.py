@@ -11,7 +11,8 @@ functions that call each other. A name has one type, that of the value it takes 
 place, so there is no recursion. Nobody checks that an index is at least 0 and below the length, nor that no integer is
 divided by 0.
 
-What is written as instructions already, an object with the methods of `Emitted`, is called like a function.
+What is written as instructions already, an object with the methods of `Emitted`, is called like a function; so is a
+function that also is plain Python, but `written_by` another one.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ from types import FunctionType, ModuleType
 from typing import Any, NamedTuple, NoReturn, Protocol
 
 from linksweep.engine.kernel import values
-from linksweep.engine.kernel.instructions import call
+from linksweep.engine.kernel.instructions import Instructions, call
 from linksweep.engine.kernel.machine_code import Array, MachineCode, machine_code, write_call
 from linksweep.engine.kernel.values import ARITHMETIC, COMPARISONS, Values, each
 
@@ -42,6 +43,19 @@ class Emitted(Protocol):
 
     def emit(self, builder: Any, *arguments: Any) -> Any:
         """Write the instructions, and return a value, a tuple of such, or nothing."""
+
+
+def written_by(write: Callable[..., Any]) -> Callable[[Callable], Any]:
+    """Return a decorator: where calls of a function are translated, `write(instructions, *arguments)` writes them."""
+
+    def mark(function: Callable) -> Callable:
+        vars(function).update(
+            emit=lambda builder, *arguments: write(Instructions(builder), *arguments),
+            text=inspect.getsource(sys.modules[write.__module__]),
+        )
+        return function
+
+    return mark
 
 
 def translated(function: Callable, kinds: tuple[str, ...]) -> MachineCode:
@@ -66,12 +80,12 @@ def _texts(function: Any) -> list[str]:
         for name in code.co_names:
             value = names.get(name)
             key = f"{getattr(value, '__module__', one.__module__)}.{name}"
-            if isinstance(value, FunctionType) and value is not call and key not in texts:
+            if hasattr(value, "emit"):
+                texts[f"{one.__module__}.{name}"] = value.text
+            elif isinstance(value, FunctionType) and value is not call and key not in texts:
                 waiting.append(value)
             elif isinstance(value, int | float):
                 texts[f"{one.__module__}.{name}"] = repr(value)
-            elif hasattr(value, "emit"):
-                texts[f"{one.__module__}.{name}"] = value.text
     return [f"{name}: {text}" for name, text in sorted(texts.items())]
 
 

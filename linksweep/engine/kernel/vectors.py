@@ -45,14 +45,21 @@ from functools import partial
 from types import FunctionType
 from typing import Any
 
-from linksweep.engine.kernel import instructions, running
+from linksweep.engine.kernel import instructions, reduce, running, translate
 from linksweep.engine.kernel.instructions import REGISTER, Instructions
+from linksweep.engine.kernel.machine_code import ROW, Array, new_function, write_call
 
 LANES = 2 * REGISTER
 """Samples side by side on processors with the widest registers; the least length of a row."""
 VECTORS, ONE_BY_ONE = "by vectors", "one by one"
 """How loops count."""
-SOURCE = inspect.getsource(sys.modules[__name__]) + running.SOURCE + instructions.SOURCE
+ROW_LENGTHS = {"profiles": "room", "block": "room", "scratch": "apart"}
+"""Names of tables, and of the count of numbers from one of their rows to the next."""
+SUMMARIES = {kind: getattr(reduce, kind) for kind in running.KINDS}
+"""Functions of a row."""
+SOURCE = inspect.getsource(sys.modules[__name__]) + "".join(
+    (running.SOURCE, instructions.SOURCE, translate.SOURCE, inspect.getsource(reduce))
+)
 """All that enters the machine code besides the functions themselves."""
 
 
@@ -71,9 +78,10 @@ def intrinsic(function: FunctionType, streamed: str = "") -> Callable:
     names = list(inspect.signature(function).parameters)
 
     def emit(builder: Any, *arguments: Any) -> None:
-        writer = _Writer(builder, streams=bool(streamed))
-        passed = [writer.argument(x, name == streamed) for name, x in zip(names, arguments, strict=True)]
-        FunctionType(function.__code__, writer.names())(*passed)
+        writer, passed = _Writer(builder, streams=bool(streamed)), dict(zip(names, arguments, strict=True))
+        lengths = {name: passed.get(length) for name, length in ROW_LENGTHS.items()}
+        values = [writer.argument(x, lengths.get(name), name == streamed) for name, x in passed.items()]
+        FunctionType(function.__code__, writer.names())(*values)
 
     return instructions.intrinsic(emit, names)
 
@@ -82,7 +90,7 @@ def _align_stack(function: Any) -> None:
     """Let vectors that wait in memory begin with a line of the cache: across two, kernels took up to a third longer,
     in three processes of four."""
     function.attributes.alignstack = 64
-    function.attributes.add("nounwind")  # llvmlite writes an alignment beside other attributes only
+    function.attributes.add("noinline")  # what inlined it would have a stack of its own
 
 
 def _operation(name: str, reflected: bool = False) -> Callable[..., _Value]:
@@ -105,18 +113,23 @@ class _Value:
     __sub__, __rsub__ = _operation("-"), _operation("-", reflected=True)
     __mul__, __rmul__ = _operation("*"), _operation("*", reflected=True)
     __truediv__, __rtruediv__ = _operation("/"), _operation("/", reflected=True)
-    __floordiv__ = _operation("//")
+    __floordiv__, __mod__ = _operation("//"), _operation("%")
     __lt__, __gt__ = _operation("<"), _operation(">")
     __neg__, __abs__ = _operation("negate"), _operation("abs")
 
 
 class _Array:
-    """An array in machine code: elements are loaded and stored, or, where a loop counts by vectors, vectors."""
+    """An array in machine code: elements are loaded and stored, or, where a loop counts by vectors, vectors.
 
-    def __init__(self, writer: _Writer, struct: Any, streamed: bool) -> None:
-        self.writer, self.struct, self.streamed = writer, struct, streamed
+    `length` is that of its rows, or of itself where somebody asks for it.
+    """
 
-    def __getitem__(self, index: Any) -> _Value:
+    def __init__(self, writer: _Writer, data: Any, length: Any, streamed: bool = False) -> None:
+        self.writer, self.data, self.length, self.streamed = writer, data, length, streamed
+
+    def __getitem__(self, index: Any) -> Any:
+        if isinstance(index, tuple) and isinstance(index[1], slice):
+            return _Array(self.writer, self._place((index[0], 0))[0], self.writer.integer(index[1].stop))
         start, at = self._place(index)
         return _Value(self.writer, self.writer.load(start, at))
 
@@ -128,9 +141,8 @@ class _Array:
         writer, (*row, last) = self.writer, index if isinstance(index, tuple) else (index,)
         in_loop = isinstance(last, _Value) and last.counted
         with writer.before_loop():  # where rows start does not change in it
-            row_length = [_Value(writer, writer.builder.extract_value(self.struct.shape, 1)) for _ in row]
-            start = sum((x * length for x, length in zip(row, row_length, strict=True)), 0 if in_loop else last)
-            pointer = writer.builder.gep(self.struct.data, [writer.integer(start)])
+            start = sum((x * _Value(writer, self.length) for x in row), 0 if in_loop else last)
+            pointer = writer.builder.gep(self.data, [writer.integer(start)])
         return pointer, last if in_loop else None
 
 
@@ -148,10 +160,11 @@ class _Writer:
         """Return the functions that a function's source may use."""
         operations = {name: partial(self.operation, name) for name in self.instructions.operators}
         loops = {"in_vectors": self.in_vectors, "in_vectors_ahead": self.in_vectors_ahead, "each": self.each}
-        return {"math": math, "number": self.number, "running": self.running} | loops | operations
+        summaries = {kind: partial(self.summary, function) for kind, function in SUMMARIES.items()}
+        return {"math": math, "number": self.number, "running": self.running} | loops | operations | summaries
 
-    def argument(self, llvm: Any, streamed: bool) -> _Value | _Array:
-        return _Array(self, llvm, streamed) if hasattr(llvm, "data") else _Value(self, llvm)
+    def argument(self, llvm: Any, length: Any, streamed: bool) -> _Value | _Array:
+        return _Array(self, llvm, length, streamed) if llvm.type.is_pointer else _Value(self, llvm)
 
     # ------------------------------------------------------------------------------------------ loops
 
@@ -189,9 +202,9 @@ class _Writer:
         latest = builder.sub(self._larger(self.integer(samples), self.integer(LANES)), step)
         return lambda j: _Value(self, builder.select(builder.icmp_signed("<", j, latest), j, latest), VECTORS)
 
-    def each(self, first: _Value | int, last: _Value | int, step: _Value | int = 1) -> Iterator[_Value]:
+    def each(self, first: _Value | int, last: _Value | int) -> Iterator[_Value]:
         """Write a loop over samples one by one, as `in_vectors` does."""
-        loop = self.instructions.loop(*(self.integer(x) for x in (first, last, step)))
+        loop = self.instructions.loop(self.integer(first), self.integer(last))
         for j, _ in self._inside(loop):
             yield _Value(self, j, ONE_BY_ONE)
 
@@ -205,8 +218,22 @@ class _Writer:
 
     def running(self, kind: str, memory: _Array, place: int) -> Any:
         """Return a summary of samples to come, kept in an array from this place on."""
-        pointer = self.builder.gep(memory.struct.data, [self.integer(place)])
+        pointer = self.builder.gep(memory.data, [self.integer(place)])
         return running.KINDS[kind](self.instructions, pointer)
+
+    def summary(self, function: FunctionType, row: _Array, angles: _Array, work: _Array) -> tuple[_Value, ...]:
+        """Write the call of a summary of a row, which is translated once in a module."""
+        module, name = self.builder.module, f"{function.__module__}.{function.__name__}"
+
+        def emit(builder: Any, *arrays: Array) -> None:
+            translator = translate.Translator(builder)
+            for place, result in enumerate(translator.of_call(function, arrays)):
+                builder.store(result, builder.gep(arrays[-1].data, [translator.integer(place)]))
+
+        called = module.globals.get(name) or new_function(module, emit, name, (ROW, ROW, ROW))
+        called.linkage = "internal"
+        write_call(self.builder, called, tuple(Array(x.data, (row.length,)) for x in (row, angles, work)))
+        return work[0], work[1]
 
     def _larger(self, x: Any, y: Any) -> Any:
         return self.builder.select(self.builder.icmp_signed(">", x, y), x, y)
@@ -229,7 +256,7 @@ class _Writer:
     def _whole(self, name: str, *operands: _Value | float) -> _Value:
         """Write an operation on integers: before the loop, unless the loop counts one of them."""
         builder, counted = self.builder, {x.counted for x in operands if isinstance(x, _Value) and x.counted}
-        function = {"+": builder.add, "-": builder.sub, "*": builder.mul, "//": builder.sdiv}[name]
+        function = {"+": builder.add, "-": builder.sub, "*": builder.mul, "//": builder.sdiv, "%": builder.srem}[name]
         with nullcontext() if counted else self.before_loop():
             return _Value(self, function(*(self.integer(x) for x in operands)), *counted)
 

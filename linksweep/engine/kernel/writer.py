@@ -4,12 +4,13 @@ Design dims become nested loops (dims beyond Python's nesting limit share one lo
 operation is done in the loop of its own dims: once per design if it depends on no angle, else in the inner loop. If
 deeper loops share its result, that is kept: in `values`, or, per sample, in a row of `scratch`.
 
-    kernel(first, last, samples, sizes, parameters, parameter_at, profiles, profile_at,
+    kernel(first, last, samples, room, apart, sizes, parameters, parameter_at, profiles, profile_at,
            block, block_at, single, single_at, scratch, values, angles, work)
 
 `parameters` holds the inputs that depend on no angle, flat; `profiles` those that do, one row per design; each input
-starts at its `_at`. Results go to rows of `block`, or flat into `single`. `first, last` bound the outermost design loop
-(the samples, where there is none), so that a pool of threads can share the work.
+starts at its `_at`. Results go to rows of `block`, or flat into `single`. From one row to the next are `room` numbers,
+in `scratch` `apart`. `first, last` bound the outermost design loop (the samples, where there is none), so that a pool
+of threads can share the work.
 
 The kernel itself holds the design loops. All arithmetic is in functions that it calls, marked `@vectorised`, whose
 instructions `engine.kernel.vectors` writes: of each level, one for its single values and one for its rows.
@@ -27,7 +28,7 @@ from linksweep.engine.trace.graph import Node
 from linksweep.engine.trace.plan import Plan
 
 ARGUMENTS = (
-    "first, last, samples, sizes, parameters, parameter_at, profiles, profile_at, "
+    "first, last, samples, room, apart, sizes, parameters, parameter_at, profiles, profile_at, "
     "block, block_at, single, single_at, scratch, values, angles, work"
 )
 INFIX = {"+", "-", "*", "/", "<"}
@@ -269,13 +270,13 @@ class Writer:
         return f"-{x[0]}" if node.operator == "negate" else f"{node.operator}({', '.join(x)})"
 
     def _reductions(self, level: int) -> None:
-        depth = level + 1
-        for k, reduction in enumerate(self.reductions):
-            node = self.plan.outputs[reduction.name]
-            if self.level(node) == level:
-                self.write(depth, f"value, at = {reduction.kind}({self._row(node)}, angles, work)")
-                self.write(depth, f"single[{self._at('single', 2 * k, node)}] = value")
-                self.write(depth, f"single[{self._at('single', 2 * k + 1, node)}] = at")
+        own = {k: self.plan.outputs[r.name] for k, r in enumerate(self.reductions)}
+        own = {k: node for k, node in own.items() if self.level(node) == level}
+        if own:
+            self._function("reductions", level)
+        for k, node in own.items():
+            value, at = (f"single[{self._at('single', 2 * k + i, node)}]" for i in range(2))
+            self._line(1, f"{value}, {at} = {self.reductions[k].kind}({self._row(node)}, angles, work)")
 
 
 def operands(nodes: Iterable[Node]) -> set[Node]:

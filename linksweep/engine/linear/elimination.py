@@ -1,4 +1,4 @@
-"""Solve square systems by elimination with partial pivoting; plain Python that numba compiles and that also runs as is.
+"""Solve square systems by elimination with partial pivoting; plain Python that is translated and that also runs as is.
 
 Every value is a row of lanes (`engine.linear.lanes`), one number of each system. A step that differs from system to
 system, such as the exchange of two rows, is done in all of them, and each lane chooses which number it keeps. A step is

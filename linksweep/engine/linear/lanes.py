@@ -1,13 +1,14 @@
 """Values of many systems side by side: a lane is the number of one system.
 
 An array of shape (row, column, lane) holds one value per row and column. Code that is written in these functions and in
-+ − × ÷, abs, > runs as is, on numpy arrays of any number of lanes; numba compiles it to vector instructions of `LANES`
-numbers (`engine.linear.vectors`). Both do the same operations, so both return equal bits.
++ − × ÷, abs, > runs as is, on numpy arrays of any number of lanes; it is translated to vector instructions of `LANES`
+numbers. Both do the same operations, so both return equal bits.
 """
 
 import numpy as np
 
 from linksweep.engine.kernel.instructions import REGISTER
+from linksweep.engine.kernel.translate import written_by
 
 LANES = REGISTER
 """Lanes of compiled code."""
@@ -18,31 +19,60 @@ LARGEST_SCALED = 2.0**1022
 """Numbers from here on have no inverse power of two that is a normal number."""
 
 
+def _place(vectors, array, row, column):
+    """Return the position of a value in an array."""
+    builder = vectors.builder
+    number = builder.add(builder.mul(row, array.shape[1]), column)
+    return builder.mul(number, vectors.integer(LANES))
+
+
+@written_by(lambda vectors, array, *place: vectors.load(array.data, _place(vectors, array, *place)))
 def load(array, row, column):
     """Return the value at a row and a column."""
     return array[row, column].copy()
 
 
+@written_by(
+    lambda vectors, array, row, column, value: vectors.store(value, array.data, _place(vectors, array, row, column))
+)
 def store(array, row, column, value):
     """Write a value to a row and a column."""
     array[row, column] = value
 
 
+@written_by(lambda vectors, number: vectors.wide(number))
 def everywhere(number):
     """Return one number in all lanes."""
     return np.float64(number)
 
 
+@written_by(lambda vectors, *choice: vectors.operators["where"](*choice))
 def choose(condition, value, other):
     """Return `value` in the lanes where the condition holds, else `other`."""
     return np.where(condition, value, other)
 
 
+def _write_anywhere(vectors, condition):
+    bits = vectors.builder.bitcast(condition, vectors.ir.IntType(LANES))
+    return vectors.builder.icmp_unsigned("!=", bits, bits.type(0))
+
+
+@written_by(_write_anywhere)
 def anywhere(condition):
     """Return whether a condition holds in any lane."""
     return bool(np.any(condition))
 
 
+def _write_scale_of(vectors, value):
+    builder, integers = vectors.builder, vectors.ir.VectorType(vectors.integer, LANES)
+    inverse, exponent = (integers([bits] * LANES) for bits in (2045 << 52, EXPONENT))
+    exponent = builder.and_(builder.bitcast(value, integers), exponent)
+    scale = builder.bitcast(builder.sub(inverse, exponent), vectors.vector)
+    in_range = vectors.operators["<"](value, LARGEST_SCALED)
+    return vectors.operators["where"](in_range, scale, value)
+
+
+@written_by(_write_scale_of)
 def scale_of(value):
     """Return the power of two that scales a positive value into [1/2, 1); 2^1022 for 0.
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import inspect
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
@@ -12,13 +11,16 @@ import numpy as np
 
 from linksweep.base.memory import require_memory
 from linksweep.engine import run
-from linksweep.engine.kernel import instructions
-from linksweep.engine.kernel.compile import compiled_functions
+from linksweep.engine.kernel.machine_code import INTEGERS, ROW, MachineCode
+from linksweep.engine.kernel.translate import translated
 from linksweep.engine.linear import elimination, lanes
 from linksweep.engine.patience import Patience
 
 AT_ONCE = 4096
 """Samples of one call: their numbers stay in cache."""
+BLOCKS = "f8[:, :, :]"
+KINDS = (BLOCKS, "i8[:, :]", ROW, INTEGERS, BLOCKS, BLOCKS, BLOCKS)
+"""Arguments of the functions of `elimination`."""
 SAMPLES_PER_THREAD = 10_000
 """Samples that pay for another thread: about a millisecond."""
 
@@ -59,11 +61,8 @@ class Solver(Patience):
     name: str
 
     @cached_property
-    def compiled(self) -> Callable:
-        from linksweep.engine.linear import vectors
-
-        taught = "".join(inspect.getsource(module) for module in (lanes, vectors)) + instructions.SOURCE
-        return compiled_functions(inspect.getsource(elimination), taught)[self.name]
+    def compiled(self) -> MachineCode:
+        return translated(getattr(elimination, self.name), KINDS)
 
 
 solver = lru_cache(maxsize=None)(Solver)
@@ -82,7 +81,7 @@ def _run(
     require_memory(f"{rows * samples} numbers (results × designs × angles): ask for fewer", 8.0 * rows * samples)
     result = np.empty((rows, samples))
     interpret = solver(name).should_interpret(10 * samples, run.COMPILE_AFTER)  # numpy is slower than the interpreter
-    function = getattr(elimination, name) if interpret else solver(name).compiled
+    function: Callable = getattr(elimination, name) if interpret else solver(name).compiled
     width = min(AT_ONCE, samples) if interpret else lanes.LANES
     room = min(AT_ONCE, -(-samples // width) * width)
 
