@@ -15,6 +15,19 @@ JAMS = ("jam_start", "jam_end", "jam_place")
 """Findings on the arcs on which friction jams a slide of a linkage."""
 ENDS = ("min", "max")
 """Extremes of a transmission angle, as the names of their findings end."""
+TITLES = {
+    "assembly": "can be assembled",
+    "arc_start": "at theta2 from",
+    "arc_end": "to",
+    "toggle_angle": "toggles at theta2",
+    "dead_centre_angle": "dead centres at theta2",
+    "reversal_angle": "reverses at theta2",
+    "transmission_angle_min": "least transmission angle",
+    "transmission_angle_max": "largest transmission angle",
+    "jam_angle": "friction jams at theta2",
+    "friction_to_jam": "least friction that jams",
+}
+"""Titles of findings; others have their names."""
 WIDTH = 24
 """Characters of the titles' column, at least."""
 
@@ -31,13 +44,27 @@ def _lines(ds: xr.Dataset) -> Iterator[Line]:
         of_pins = [*_of_pins(ds)]
         others = [str(name) for name in ds.data_vars if name not in ("overshoot", *JAMS)]
         others = [name for name in others if not (of_pins and name.startswith("transmission_angle"))]
-        yield from ((name.replace("_", " "), _summary(ds[name])) for name in others)
+        yield from (line for name in others for line in _finding(ds, name))
         yield from of_pins
         yield from _of_jams(ds)
     else:
         yield from _of_a_batch(ds) if ds.arc_start.ndim > 1 else _of_one(ds)
         yield from _of_acceleration(ds)
     yield from _of_splines(ds)
+
+
+def _finding(ds: xr.Dataset, name: str) -> Iterator[Line]:
+    """Yield a finding; the two ends of the arcs of one design are one line."""
+    if name == "arc_start" and ds.arc_start.ndim == 1:
+        yield TITLES[name], _arcs(ds)
+    elif name != "arc_end" or ds.arc_end.ndim > 1:
+        yield TITLES.get(name, name.replace("_", " ")), _summary(ds[name])
+
+
+def _arcs(ds: xr.Dataset) -> str:
+    """Return the arcs on which one design can be assembled."""
+    ends = zip(ds.arc_start.values, ds.arc_end.values, strict=True)
+    return " and ".join(f"{start:.4f}° to {end:.4f}°" for start, end in ends if np.isfinite(start)) or "nowhere"
 
 
 def _of_pins(ds: xr.Dataset) -> Iterator[Line]:
@@ -102,13 +129,11 @@ def _of_acceleration(ds: xr.Dataset) -> Iterator[Line]:
 
 
 def _of_one(ds: xr.Dataset) -> Iterator[Line]:
-    ends = zip(ds.arc_start.values, ds.arc_end.values, strict=True)
-    arcs = [f"{start:.4f}° to {end:.4f}°" for start, end in ends if np.isfinite(start)]
     angles = zip(ds.toggle.values, ds.toggle_angle.values, strict=True)
     toggles = [f"{angle:.4f}° ({str(name).replace('_', ', ')})" for name, angle in angles if np.isfinite(angle)]
     yield "Grashof class", words(ds.grashof)[int(ds.grashof)]
     yield "can be assembled", words(ds.assembly)[int(ds.assembly)]
-    yield "at theta2 from", " and ".join(arcs) or "nowhere"
+    yield "at theta2 from", _arcs(ds)
     yield "toggles at theta2", ", ".join(toggles) or "none"
     yield "least transmission angle", f"{float(ds.transmission_angle_min):.4f}°"
 

@@ -236,7 +236,7 @@ def test_files_and_command_line(tipper, tmp_path, capsys):
     assert re.search(r"^cylinder_force_max +inf +N +155\.00°$", text, re.MULTILINE)
     assert cli.main(["check", paths[0]]) == 0
     text = capsys.readouterr().out
-    assert re.search(r"^dead centre angle: +335° \(nearest\), 155° \(farthest\)$", text, re.MULTILINE)
+    assert re.search(r"^dead centres at theta2: +335° \(nearest\), 155° \(farthest\)$", text, re.MULTILINE)
     assert re.search(r"^slide at dead centre: +0\.2 m \(nearest\), 3\.4 m \(farthest\)$", text, re.MULTILINE)
 
 
