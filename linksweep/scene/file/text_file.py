@@ -6,7 +6,7 @@ import os
 import stat
 from pathlib import Path
 
-from linksweep.base.validate import did_you_mean
+from linksweep.base.validate import closest
 
 LARGEST = 64 * 2**20
 """Bytes that a text file may have."""
@@ -30,7 +30,8 @@ def text_of(path: Path, name: str, ending: str, where: str = "", advice: str = "
         with open(path, "rb") as file:
             content = file.read(LARGEST + 1)
     except FileNotFoundError:
-        near = did_you_mean(path.name, [file.name for file in path.parent.glob(f"*{ending}")])
+        alike = closest(path.stem, [file.stem for file in path.parent.glob(f"*{ending}")])
+        near = f'; did you mean "{alike}{ending}"?' if alike else ""
         raise ValueError(f"{name}: there is no such file{where}{near}{advice}") from None
     except OSError as error:
         raise ValueError(f"{name}: cannot be read: {error.strerror}") from None

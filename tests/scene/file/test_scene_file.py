@@ -296,6 +296,8 @@ def test_files_that_cannot_be_read(tmp_path):
     (tmp_path / "latin.toml").write_bytes("# Kräfte".encode("latin-1"))
     with pytest.raises(ValueError, match=r'pres.toml: there is no such file; did you mean "press.toml"\?'):
         read_scene(tmp_path / "pres.toml")
+    with pytest.raises(ValueError, match=r"nope.toml: there is no such file$"):  # alike in its ending alone
+        read_scene(tmp_path / "nope.toml")
     with pytest.raises(ValueError, match=r"latin.toml: is not a text file in UTF-8"):
         read_scene(tmp_path / "latin.toml")
     with pytest.raises(ValueError, match="cannot be read"):
