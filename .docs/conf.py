@@ -13,7 +13,7 @@ os.environ["MPLBACKEND"] = "module://matplotlib_inline.backend_inline"  # of the
 
 matplotlib.use("Agg")  # of the pictures in the gallery
 
-from generators import examples, methods, names, notebooks, quantities, repository, scene_file  # noqa: E402
+from generators import examples, methods, names, notebooks, plots, quantities, repository, scene_file  # noqa: E402
 
 import linksweep  # noqa: E402
 
@@ -42,6 +42,10 @@ default_role = "py:obj"  # `linksweep.sweep` is a link, any other word in backti
 
 autosummary_generate = True
 autodoc_typehints = "none"  # docstrings state the types
+toc_object_entries_show_parents = "hide"
+numpydoc_xref_param_type = True
+numpydoc_xref_aliases = names.classes()
+numpydoc_xref_ignore = "all"
 numpydoc_show_class_members = False  # the template lists them
 
 myst_enable_extensions = ["colon_fence"]
@@ -81,7 +85,7 @@ html_theme_options = {
 def write_pages(app):
     """Write the pages that are made of the package itself, before Sphinx looks for pages."""
     folder = HERE / "generated"
-    for maker in (repository, examples, methods, quantities, scene_file):
+    for maker in (repository, examples, methods, plots, quantities, scene_file):
         maker.write(folder)
 
 
@@ -90,6 +94,7 @@ def setup(app):
     app.connect("config-inited", lambda app, config: write_pages(app))
     app.connect("source-read", repository.fit_links)
     app.connect("doctree-read", names.link_names)
+    app.connect("autodoc-process-docstring", plots.complete, priority=400)  # before numpydoc
     app.connect("autodoc-skip-member", names.leave_out)
     app.connect("missing-reference", methods.link)
     app.connect("doctree-resolved", notebooks.check_outputs)

@@ -33,6 +33,11 @@ EQUATIONS = re.compile(r"\n\n    ")
 INTRODUCTION = """\
 How results are computed: equations and sources, as they stand at the top of the modules that the
 [reference](../reference/api.md) names or is made of.
+
+Three lecture papers are cited as documents. **Document 1**, "Matrix Dynamic Analysis for Four Bar", has a four-bar of
+steel bars in numbers, and a slider-crank with friction. **Document 2**, "ME 470 Final Project", has the four-bar over a
+whole revolution, with loads. **Document 3**, lecture 17, has the drives of both by another link, and the rocket car in
+a loop. The notebooks [worked_example](notebooks/worked_example) and [me470](notebooks/me470) go through the first two.
 """
 
 

@@ -61,7 +61,19 @@ class Cycle:
 
     @property
     def scene(self) -> Scene:
-        """Scene that the Dataset was computed from; raises ValueError where the Dataset has lost it."""
+        """Scene that the Dataset was computed from.
+
+        Raises
+        ------
+        ValueError
+            If the Dataset has lost it.
+
+        Examples
+        --------
+        >>> import linksweep as ls
+        >>> round(ls.peaks(ls.example("press")).linksweep.scene.omega2, 3)  # rad/s
+        31.416
+        """
         return scene_of(self._ds)
 
     def to_pandas(self) -> pd.DataFrame:

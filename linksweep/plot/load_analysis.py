@@ -129,7 +129,7 @@ def over_speed(scene: Scene, of: str, *, speeds: Any, below: float | None = None
     Examples
     --------
     >>> import linksweep as ls
-    >>> ls.plot.over_speed(ls.example("press"), "F32", speeds=[10, 20, 30, 40, 50], below=500.0).get_xlabel()
+    >>> ls.plot.over_speed(ls.example("press"), "F32", speeds=range(10, 52, 2), below=500.0).get_xlabel()
     'crank speed $\\\\omega_2$ [rad/s]'
     """
     require(scene, "drives")

@@ -1,7 +1,7 @@
 """Documents of PMKS+, the Planar Mechanism Kinematic Simulator: drawings of linkages, each one text.
 
 The text is the query of a link to the drawing, or a file ".pmks". Its sections end with a dot, and a list of records
-with one dot more::
+with one dot more:
 
     flags.scale,….speed,step.units.joint.joint..link.link..force..selection.extras
 
