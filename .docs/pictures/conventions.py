@@ -9,7 +9,9 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Arc, FancyArrowPatch
+from matplotlib.spines import Spine
 from matplotlib.text import Text
+from matplotlib.transforms import Bbox
 
 import linksweep as ls
 
@@ -25,7 +27,7 @@ def main() -> None:
         fig, ax = plt.subplots(figsize=(7.0, 4.6), layout="constrained")
         draw(ax)
         finish(ax)
-        fig.savefig(HERE / f"{name}.png", dpi=120, bbox_inches="tight", pad_inches=0.05)
+        fig.savefig(HERE / f"{name}.png", dpi=180, bbox_inches=drawn(ax))
         plt.close(fig)
 
 
@@ -72,6 +74,17 @@ def finish(ax: Axes) -> None:
         text.set_zorder(9.0)
     for letter in ax.findobj(lambda artist: isinstance(artist, Text) and artist.get_text() == "P"):
         letter.set_visible(False)  # the arrow of the load shows the point
+
+
+def drawn(ax: Axes) -> Bbox:
+    """Return the box about all that is drawn [inch], with a small margin."""
+    ax.figure.canvas.draw()
+    artists = [
+        artist for artist in ax.get_children() if artist.get_visible() and artist not in {ax.patch, ax.xaxis, ax.yaxis}
+    ]
+    boxes = [artist.get_window_extent() for artist in artists if not isinstance(artist, Spine)]
+    inches = ax.figure.dpi_scale_trans.inverted()
+    return Bbox.union([box for box in boxes if box.width or box.height]).transformed(inches).padded(0.08)
 
 
 def arrow(ax: Axes, start: tuple[float, float], end: tuple[float, float], color: str, width: float = 1.2) -> None:

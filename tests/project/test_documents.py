@@ -2,6 +2,8 @@
 
 import re
 from collections import Counter
+from contextlib import redirect_stdout
+from io import StringIO
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -39,9 +41,14 @@ def elsewhere(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("page", pages_with("python"))
 def test_python_of_a_page_runs_from_top_to_bottom(page):
+    """A block of text right after the code is what the code prints."""
     names: dict = {}
-    for block in blocks(page, "python"):
-        exec(compile(block, page.name, "exec"), names)
+    text = page.read_text(encoding="utf-8")
+    for code, output in re.findall(r"```python\n(.*?)```(?:\n\n```text\n(.*?)```)?", text, re.DOTALL):
+        printed = StringIO()
+        with redirect_stdout(printed):
+            exec(compile(code, page.name, "exec"), names)
+        assert printed.getvalue() == output or not output
         plt.close("all")
     if page.name == "README.md":
         assert Path("cycle.nc").exists() and ls.load_scene("scene.toml") == names["scene"]
