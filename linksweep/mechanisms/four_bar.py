@@ -67,8 +67,9 @@ class FourBar(SingleDyad):
     >>> bar = dict(width=0.02, thickness=0.02, density=7750)
     >>> press = ls.FourBar(crank=ls.Bar(length=0.08, **bar), coupler=ls.Bar(length=0.22, **bar),
     ...                    rocker=ls.Bar(length=0.18, **bar), ground=0.20)
-    >>> press.branch
-    'open'
+    >>> worst = ls.peaks(ls.Scene(press, omega2=30.0, gravity=(0.0, -9.81)), of=["F32"])
+    >>> print(f"{float(worst.F32_peak):.1f} N at {float(worst.F32_peak_at):.1f} degrees")
+    183.3 N at 15.0 degrees
     """
 
     crank: AnyLink = of_kind(LINK)

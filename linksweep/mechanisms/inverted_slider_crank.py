@@ -83,8 +83,10 @@ class InvertedSliderCrank(SingleDyad):
     --------
     >>> import linksweep as ls
     >>> crank, rocker = ls.Disk(0.12, 0.2, 0.03, 7800), ls.Link(0.7, 18.0, 0.8, cg_distance=0.35)
-    >>> ls.InvertedSliderCrank(crank, rocker, ground=0.36, block_mass=1.5).branch
-    'open'
+    >>> shaper = ls.InvertedSliderCrank(crank, rocker, ground=0.36, block_mass=1.5)
+    >>> motion = ls.geometry(ls.Scene(shaper, omega2=5.0))
+    >>> print(f"swing {float(motion.swing):.2f} degrees, time ratio {float(motion.time_ratio):.3f}")
+    swing 38.94 degrees, time ratio 1.552
 
     A tipper: its body, 4 t about the hinge A, is raised by a cylinder between the frame at D and the body at B.
 

@@ -300,7 +300,7 @@ class Gears(ByContent):
     ratio : float, Fraction or str, default ""
         Turns of the wheel per turn of the crank [1], negative for the opposite sense: a whole number, or a fraction
         p/q of whole numbers up to 99, as "-3/2", Fraction(-3, 2) or -1.5. The cycle then takes q turns of the crank.
-        Left out where the text of the linkage states it; stated once in all.
+        State it once: here, or in the text of the linkage.
     phase : float or DataArray, default 0.0
         Angle of the wheel where that of the crank is 0 [degree].
     pressure_angle : float or DataArray, default None

@@ -60,16 +60,15 @@ class LoopTrack(Mechanism):
     Notes
     -----
     The index of its results is `theta`, the position on the loop [degree]: 0 at the bottom, counter-clockwise, in the
-    direction of travel, on one lap from the bottom: 390 is 30.
+    direction of travel. It counts on one lap from the bottom: 390 degrees are 30.
 
     The scene states `speed`, `thrust` and `profile`. With profile="constant" the car has that speed at every position,
     while a_tangential is the acceleration that the forces cause there: the problem of document 3, lecture 17, example
-    17-4. Status is left_track where the track would have to pull. With profile="energy" it has that speed at the bottom
-    and follows work and energy; from where the car first leaves the track, or stalls, there are no values for the rest
-    of the lap.
+    17-4 (see `linksweep.physics.loop_track`). Status is left_track where the track would have to pull. With
+    profile="energy" it has that speed at the bottom and follows work and energy; from where the car first leaves the
+    track, or stalls, there are no values for the rest of the lap.
 
-    a_radial is positive towards the centre. The document prints +v²/R for it where it takes the outward normal as
-    positive; the numbers are right.
+    a_radial is positive towards the centre, +v²/R. The document prints the same, although its normal points outward.
 
     Examples
     --------

@@ -90,8 +90,10 @@ class SliderCrank(SingleDyad):
     --------
     >>> import linksweep as ls
     >>> crank, rod = ls.Disk(0.045, 0.06, 0.02, 7800), ls.Link(0.15, 0.6, 2.2e-3, cg_distance=0.05)
-    >>> ls.SliderCrank(crank, rod, slider_mass=0.5, friction=0.1).branch
-    'open'
+    >>> engine = ls.SliderCrank(crank, rod, slider_mass=0.5, friction=0.1)
+    >>> worst = ls.peaks(ls.Scene(engine, omega2=300.0), of=["F32"])
+    >>> print(f"{float(worst.F32_peak):.1f} N at {float(worst.F32_peak_at):.1f} degrees")
+    5306.5 N at 0.9 degrees
     """
 
     crank: AnyLink = of_kind(LINK)

@@ -90,9 +90,12 @@ def check(scene: Scene) -> xr.Dataset:
     Examples
     --------
     >>> import linksweep as ls
-    >>> limits = ls.check(ls.example("press"))
-    >>> round(float(limits.transmission_angle_min), 3)
-    33.03
+    >>> print(ls.check(ls.example("press")).linksweep)
+    Grashof class:             crank-rocker
+    can be assembled:          everywhere
+    at theta2 from:            0.0000° to 360.0000°
+    toggles at theta2:         none
+    least transmission angle:  33.0302°
     """
     require_scene(scene)
     scene = in_memory(scene)

@@ -89,9 +89,14 @@ def peaks(
     --------
     >>> import linksweep as ls
     >>> scene = ls.example("press")
-    >>> worst = ls.peaks(scene, of=["F32"])
-    >>> sorted(worst.data_vars)
-    ['F32_peak', 'F32_peak_at', 'status']
+    >>> worst = ls.peaks(scene, of=["F32", "T12"])
+    >>> float(worst.F32_peak.round(3)), float(worst.F32_peak_at.round(2))  # N, degrees
+    (354.538, 300.27)
+    >>> print(worst.linksweep)
+    quantity     value  unit  at theta2
+    F32_peak   354.538  N       300.27°
+    T12_max    20.5233  N m     324.69°
+    T12_min   -21.2235  N m     183.20°
 
     Over a part of the turn, from whose first angle on this force decreases:
 

@@ -98,8 +98,10 @@ def sweep(
     >>> import linksweep as ls
     >>> scene = ls.example("press")
     >>> cycle = ls.sweep(scene, theta2=360, of=["T12", "F32"])
-    >>> dict(cycle.sizes), cycle.T12.units
-    ({'theta2': 360}, 'N m')
+    >>> dict(cycle.sizes)
+    {'theta2': 360}
+    >>> float(cycle.F32.sel(theta2=90.0).round(3)), cycle.F32.units
+    (181.633, 'N')
     """
     require_scene(scene)
     refuse([*choice_problems("solver", solver, SOLVERS), *count_problems("threads", threads)])

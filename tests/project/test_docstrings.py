@@ -196,7 +196,7 @@ def unit_problems(name: str, type_line: str, text: str, kind: str | None) -> lis
 
 def plain_unit(text: str) -> str:
     """Return a unit with exponents as UDUNITS writes them, and a blank for each product."""
-    return text.strip().replace("^", "").replace("²", "2").replace("³", "3").replace("·", " ")
+    return text.strip().replace("^", "").replace("²", "2").replace("³", "3").replace("⁴", "4").replace("·", " ")
 
 
 @pytest.mark.parametrize("name", sorted(SUBJECTS))

@@ -116,8 +116,8 @@ def best_counterweights(
     >>> scene = ls.example("press")
     >>> weights = ls.best_counterweights(scene, {"Fs_rms": 1.0, "T12_ripple": 1.0}, radius=0.06, theta2=180)
     >>> table = ls.compare(scene, ls.with_counterweights(scene, weights), of=["Fs_rms"], theta2=180)
-    >>> bool(table.Fs_rms.sel(balance="after") < table.Fs_rms.sel(balance="before"))
-    True
+    >>> table.Fs_rms.round(2).values.tolist()  # N, before and after
+    [81.54, 6.14]
     """
     require(scene, "bodies")
     if designs := design_sizes(scene):

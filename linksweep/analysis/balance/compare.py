@@ -55,9 +55,10 @@ def compare(before: Scene, after: Scene, *, of: Any, theta2: int = 720, threads:
     >>> import linksweep as ls
     >>> scene = ls.example("press")
     >>> balanced = ls.with_counterweights(scene, ls.counterweights(scene, radius=0.06))
-    >>> table = ls.compare(scene, balanced, of=["Fs_peak", "T12_ripple"])
-    >>> table.Fs_peak.round(6).values.tolist()
-    [166.43115, 0.0]
+    >>> print(ls.compare(scene, balanced, of=["Fs_peak", "T12_ripple"]).linksweep)
+    quantity    before   after  unit
+    Fs_peak     166.43       0  N
+    T12_ripple  14.047  14.194  N m
     """
     require_scene(before)
     require_scene(after)

@@ -49,8 +49,10 @@ class Counterweight(ByContent):
     Examples
     --------
     >>> import linksweep as ls
-    >>> ls.Counterweight("crank", mass=0.4, at=(0.05, 180.0)).inertia
-    0.0
+    >>> weight = ls.Counterweight("crank", mass=0.4, at=(0.05, 180.0))
+    >>> balanced = ls.with_counterweights(ls.example("press"), [weight])
+    >>> round(balanced.mechanism.crank.mass, 3)  # kg, of which the bar has 0.248
+    0.648
     """
 
     link: str

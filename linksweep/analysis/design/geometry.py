@@ -98,9 +98,14 @@ def geometry(
     Examples
     --------
     >>> import linksweep as ls
-    >>> motion = ls.geometry(ls.example("engine"))
-    >>> round(float(motion.stroke), 12), round(float(motion.time_ratio), 12)
-    (0.086, 1.0)
+    >>> print(ls.geometry(ls.example("engine")).linksweep)
+    quantity                      value  unit       at
+    stroke                        0.086  m
+    time_ratio                        1
+    reversal_angle (stretched)       90  °
+    reversal_angle (folded)         270  °
+    transmission_angle_max           90  °     270.00°
+    transmission_angle_min      72.7494  °       0.00°
     """
     require(scene, "bodies")
     bare = in_memory(replace(scene, omega2=1.0, alpha2=0.0, loads=()))
@@ -184,9 +189,9 @@ def coupler_curve(
     Examples
     --------
     >>> import linksweep as ls
-    >>> curve = ls.coupler_curve(ls.example("press"), at=(0.10, 15.0), theta2=360)
-    >>> curve.Py.dims, curve.aPy.units
-    (('theta2',), 'm/s^2')
+    >>> curve = ls.coupler_curve(ls.example("press"), at=(0.10, 15.0), theta2=[0, 90, 180, 270])
+    >>> curve.Py.round(4).values.tolist()  # m
+    [0.0939, 0.1469, 0.0819, 0.0197]
     """
     require(scene, "bodies")
     bodies = {body.role: body for body in scene.mechanism.bodies}

@@ -69,9 +69,18 @@ def duty(scene: Scene | MultiCylinder, *, threads: int | None = None) -> xr.Data
     Examples
     --------
     >>> import linksweep as ls
-    >>> cycle = ls.duty(ls.example("press"))
-    >>> cycle.work.units, bool(abs(cycle.work + cycle.work_of_loads) < 1e-9)
-    ('J', True)
+    >>> print(ls.duty(ls.example("press")).linksweep)
+    the drive
+    mean torque                    0  N m
+    root mean square torque   14.047  N m
+    largest torque            21.224  N m
+    mean power                     0  W
+    most power                644.76  W
+    least power              -666.76  W
+    work in a cycle                0  J
+    work fed                  39.537  J
+    work taken back           39.537  J
+    work of the loads              0  J
     """
     one = one_cylinder(scene)
     require(one, "drives")

@@ -114,8 +114,10 @@ def flywheel(
     --------
     >>> import linksweep as ls
     >>> wheel = ls.flywheel(ls.example("press"), fluctuation=0.05)
-    >>> wheel.flywheel_inertia.units, round(float(wheel.fluctuation), 12)
-    ('kg m^2', 0.05)
+    >>> print(f"{float(wheel.flywheel_inertia):.4f} kg m²")
+    0.7967 kg m²
+    >>> print(f"{float(wheel.speed_min):.2f} to {float(wheel.speed_max):.2f} rad/s")
+    30.63 to 32.20 rad/s
     """
     require(one_cylinder(scene), "drives")
     refuse(_problems(one_cylinder(scene), fluctuation, inertia))

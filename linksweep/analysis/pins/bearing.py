@@ -68,8 +68,10 @@ class Bearing(ByContent):
     Examples
     --------
     >>> import linksweep as ls
-    >>> ls.Bearing(diameter=0.02, length=0.03, friction=0.1).kind
-    'ball'
+    >>> pins = {"B": ls.Bearing(diameter=0.02, length=0.03, friction=0.1), "C": ls.Bearing(capacity=5000.0)}
+    >>> loads = ls.bearings(ls.example("press"), pins)
+    >>> round(float(loads.pressure.sel(pin="B").max())), round(float(loads.L10.sel(pin="C")))  # Pa, million revolutions
+    (590895, 16520)
     """
 
     diameter: Number = parameter("length", None, above=0.0)

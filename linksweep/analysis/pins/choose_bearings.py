@@ -112,9 +112,12 @@ def choose_bearings(
     Examples
     --------
     >>> import linksweep as ls
-    >>> chosen = ls.choose_bearings(ls.example("press"), life="10000 h", bore="20 mm")
-    >>> chosen.choice.attrs["flag_meanings"].split()[int(chosen.choice.sel(pin="B"))]
-    '6004'
+    >>> print(ls.choose_bearings(ls.example("press"), life="10000 h", bore="20 mm").linksweep)
+    pin  largest [N]  equivalent [N]  C ≥ [N]  C0 ≥ [N]  bearing  size [mm]      L10h [h]     s0
+    A          365.6           282.9     1598     365.6  6004     20 × 42 × 12    2475000  14.63
+    B          354.5           268.6     1517     354.5  6004     20 × 42 × 12    2893000  15.08
+    C          388.3           196.3    747.7     388.3  6004     20 × 42 × 12  2.414e+07  13.77
+    D          376.3           194.6    767.2     376.3  6004     20 × 42 × 12  2.234e+07  14.21
     """
     links = checked_pins(scene, None)
     hours = _hours(life)

@@ -90,10 +90,10 @@ def contact_loss(
     --------
     >>> import linksweep as ls
     >>> loss = ls.contact_loss(ls.example("press"), clearance=50e-6)
-    >>> str(loss.knock.max("theta2").idxmax("pin").item()), bool((loss.knock > 1.0).any())
-    ('D', False)
-    >>> bool((loss.turning_per_force > 5.0).any())  # by Earles and Wu
-    False
+    >>> round(float(loss.knock.max()), 4)  # far below 1: no pin knocks
+    0.0015
+    >>> round(float(loss.turning_per_force.max()), 2)  # rad/N/s, by Earles and Wu
+    0.86
     """
     pins = links_of_pins(scene)
     scene = in_memory(scene)

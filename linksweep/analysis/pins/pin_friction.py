@@ -91,14 +91,15 @@ def pin_friction(
     Notes
     -----
     A pin that stands still in its bearing has no friction. The friction circle is that of exact Coulomb friction, of
-    radius μ·r/√(1 + μ²); textbooks' μ·r is 0.5 % more at μ = 0.1. Source: module's equations.
+    radius μ·r/√(1 + μ²); textbooks' μ·r is 0.5 % more at μ = 0.1. Equation and
+    source: `linksweep.analysis.pins.pin_friction`.
 
     Examples
     --------
     >>> import linksweep as ls
     >>> cycle = ls.pin_friction(ls.example("engine"), {"B": ls.Bearing(diameter=0.05, friction=0.01)})
-    >>> bool((cycle.convergence == 0).all()), bool(0.9 < cycle.efficiency < 1.0)
-    (True, True)
+    >>> round(float(cycle.efficiency), 3)
+    0.923
     """
     rubbing = _rubbing(scene, pins)
     refuse(count_problems("theta2", theta2) + count_problems("iterations", iterations))

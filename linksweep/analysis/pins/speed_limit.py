@@ -131,7 +131,9 @@ def speed_limit(scene: Scene, of: str, *, below: float, threads: int | None = No
     >>> from dataclasses import replace
     >>> press = ls.example("press")
     >>> limit = float(ls.speed_limit(press, "F32", below=1000.0).omega2_limit)
-    >>> round(float(ls.peaks(replace(press, omega2=limit), of=["F32"]).F32_peak), 6)
+    >>> print(f"{limit:.2f} rad/s")
+    69.29 rad/s
+    >>> round(float(ls.peaks(replace(press, omega2=limit), of=["F32"]).F32_peak), 6)  # N
     1000.0
     """
     require(scene, "drives")

@@ -90,10 +90,12 @@ def size_links(
     >>> import linksweep as ls
     >>> press, steel = ls.example("press"), ls.material("S235")
     >>> sized = ls.size_links(press, steel, safety=2.0, stress_concentration=2.5)
+    >>> (1e3 * sized.thickness).round(2).values.tolist()  # mm, by link
+    [7.81, 2.43, 4.11]
     >>> lighter = ls.scene_at(sized)
     >>> worst = ls.strength(lighter, steel, stress_concentration=2.5)
-    >>> bool(abs(worst.goodman_safety.sel(link="crank") - 2.0) < 1e-6), lighter.mechanism.crank.thickness < 0.02
-    (True, True)
+    >>> worst.goodman_safety.round(2).values.tolist()
+    [2.0, 2.38, 3.23]
     """
     require_scene(scene)
     refuse(choice_problems("vary", vary, STEEPNESS))

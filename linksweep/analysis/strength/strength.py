@@ -114,9 +114,11 @@ def strength(
     Examples
     --------
     >>> import linksweep as ls
-    >>> worst = ls.strength(ls.example("press"), ls.material("S235"), stress_concentration=2.5)
-    >>> bool(worst.goodman_safety.sel(link="coupler") > 2.0), str(worst.goodman_safety.idxmin("link").item())
-    (True, 'crank')
+    >>> print(ls.strength(ls.example("press"), ls.material("S235"), stress_concentration=2.5).linksweep)
+    link     stress [MPa]  at [%]  at [°]  yield  Goodman  Soderberg  buckling
+    crank           40.31     0.0   185.4  5.830    4.538      4.506     507.6
+    coupler         14.84    43.9    32.9  15.84    18.40      14.43     263.2
+    rocker          24.83     0.0    19.0  9.463    15.26      10.31     244.8
     """
     require_scene(scene)
     roles = beams_of(scene, links)

@@ -22,7 +22,11 @@ from linksweep.scene.scene import Scene
 
 
 class NotCarriedOverWarning(UserWarning):
-    """A document has parts that the scene made of it has not; the message lists them."""
+    """A drawing has parts that the scene made of it lacks.
+
+    The message of `linksweep.from_pmks` lists them: further machines and inputs, loads on links that stand still, and
+    the like. What it does not list is in the scene.
+    """
 
 
 def from_pmks(source: str | os.PathLike[str], *, machine: int = 1) -> Scene:
@@ -34,8 +38,8 @@ def from_pmks(source: str | os.PathLike[str], *, machine: int = 1) -> Scene:
     Parameters
     ----------
     source : str or PathLike
-        A link to the drawing, such as "https://app.pmksplus.com/?2v.Ay,…" (nothing is fetched: the link holds the whole
-        document); a file that PMKS+ has saved, "press.pmks"; or the text itself.
+        A link to the drawing, such as ``https://app.pmksplus.com/?2v.Ay,…`` (nothing is fetched: the link holds the
+        whole document); a file that PMKS+ has saved, "press.pmks"; or the text itself.
     machine : int, default 1
         Machine to take from a drawing of several, in the document's order, those with an input first.
 

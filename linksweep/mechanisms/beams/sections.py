@@ -36,9 +36,9 @@ class Section(ByContent):
         Section modulus for bending in the plane of motion [m³]: second moment of area over the distance of the extreme
         fibre.
     second_moment : float or DataArray, default None
-        Second moment of area for bending in the plane of motion [m^4]; None where no buckling is computed.
+        Second moment of area for bending in the plane of motion [m⁴]; None where no buckling is computed.
     second_moment_across : float or DataArray, default None
-        Second moment of area for bending across that plane [m^4].
+        Second moment of area for bending across that plane [m⁴].
 
     Notes
     -----

@@ -30,7 +30,11 @@ INSIDE = np.arange(1, 16) / 16
 
 
 class OvershootWarning(UserWarning):
-    """A spline leaves the range of its data by more than 1 % of that range."""
+    """A spline leaves the range of its data by more than 1 % of that range.
+
+    The curve through values that rise in a step swings beyond them. State interpolation="pchip", "linear" or "step" for
+    the `linksweep.Load`, or more values where they change quickly.
+    """
 
 
 def interpolation_attribute(table: dict[str, Any]) -> dict[str, Any]:

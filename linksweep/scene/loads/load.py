@@ -92,8 +92,11 @@ class Load(ChangingLoad):
     Examples
     --------
     >>> import linksweep as ls
-    >>> ls.Load("coupler", force=(0.0, -80.0), at=(0.10, 15.0)).frame
-    'ground'
+    >>> from dataclasses import replace
+    >>> push = ls.Load("coupler", force=(0.0, -80.0), at=(0.10, 15.0))
+    >>> scene = replace(ls.example("press"), loads=[push])
+    >>> round(float(ls.peaks(scene, of=["F43"]).F43_peak), 1)  # N
+    169.9
 
     A press pushes over the last 12 mm before its outer dead centre, whatever its offset.
 

@@ -80,15 +80,18 @@ class Spring(_Line):
 
     Notes
     -----
-    Results of the scene that takes the spring as its k-th load have loadk_length, loadk_tension and loadk_power on
-    request. That scene checks its values, and raises ValueError. With its ends in one point a spring has no direction:
-    its force is 0 there.
+    With the spring as first load a scene has `load1_length` [m], `load1_tension` [N] and `load1_power` [W] as
+    quantities; the number is that of the load in the scene. The scene checks its values, and raises ValueError. With
+    its ends in one point a spring has no direction: its force is 0 there.
 
     Examples
     --------
     >>> import linksweep as ls
-    >>> ls.Spring(from_=("ground", 0.3, 0.0), to=("rocker", 0.1, 0.0), rate=2000.0, free_length=0.05).rate
-    2000.0
+    >>> from dataclasses import replace
+    >>> spring = ls.Spring(from_=("ground", 0.3, 0.0), to=("rocker", 0.1, 0.0), rate=2000.0, free_length=0.05)
+    >>> worst = ls.peaks(replace(ls.example("press"), loads=[spring]), of=["load1_tension"])
+    >>> round(float(worst.load1_tension_max), 1)  # N
+    272.4
     """
 
     rate: Number = parameter("spring_rate", at_least=0.0)
@@ -116,14 +119,18 @@ class Damper(_Line):
 
     Notes
     -----
-    Results of the scene that takes the damper as its k-th load have loadk_length, loadk_tension and loadk_power on
-    request. That scene checks its values, and raises ValueError. With its ends in one point its force is 0.
+    With the damper as first load a scene has `load1_length` [m], `load1_tension` [N] and `load1_power` [W] as
+    quantities; the number is that of the load in the scene. The scene checks its values, and raises ValueError. With
+    its ends in one point its force is 0.
 
     Examples
     --------
     >>> import linksweep as ls
-    >>> ls.Damper(from_=("ground", 0.3, 0.0), to=("rocker", 0.1, 0.0), coefficient=150.0).coefficient
-    150.0
+    >>> from dataclasses import replace
+    >>> damper = ls.Damper(from_=("ground", 0.3, 0.0), to=("rocker", 0.1, 0.0), coefficient=150.0)
+    >>> worst = ls.peaks(replace(ls.example("press"), loads=[damper]), of=["load1_tension"])
+    >>> round(float(worst.load1_tension_max), 1)  # N
+    145.1
     """
 
     coefficient: Number = parameter("damping_coefficient", at_least=0.0)

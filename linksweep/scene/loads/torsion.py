@@ -63,14 +63,17 @@ class TorsionSpring(_Turning):
     alone, and no turns are counted. Where a link turns so far that the twist passes 180, the torque jumps; `peaks`
     looks at both sides of the jump of a spring between crank and ground, at other springs only at the samples.
 
-    Results of the scene that takes the spring as its k-th load have loadk_twist [degree], loadk_to_torque and
-    loadk_power on request. That scene checks its values, and raises ValueError.
+    With the spring as first load a scene has `load1_twist` [degree], `load1_to_torque` [N m] and `load1_power` [W] as
+    quantities; the number is that of the load in the scene. The scene checks its values, and raises ValueError.
 
     Examples
     --------
     >>> import linksweep as ls
-    >>> ls.TorsionSpring(from_="ground", to="rocker", rate=5.0, free_angle=90.0).to
-    'rocker'
+    >>> from dataclasses import replace
+    >>> spring = ls.TorsionSpring(from_="ground", to="rocker", rate=5.0, free_angle=90.0)
+    >>> worst = ls.peaks(replace(ls.example("press"), loads=[spring]), of=["load1_twist"])
+    >>> round(float(worst.load1_twist_max), 1)  # degrees
+    47.2
     """
 
     rate: Number = parameter("torsional_rate", at_least=0.0)
@@ -104,14 +107,17 @@ class TorsionDamper(_Turning):
 
     Notes
     -----
-    Results of the scene that takes it as its k-th load have loadk_to_torque and loadk_power on request. That scene
-    checks its values, and raises ValueError.
+    With the damper as first load a scene has `load1_to_torque` [N m] and `load1_power` [W] as quantities; the number is
+    that of the load in the scene. The scene checks its values, and raises ValueError.
 
     Examples
     --------
     >>> import linksweep as ls
-    >>> ls.TorsionDamper(from_="crank", to="coupler", coefficient=0.2).coefficient
-    0.2
+    >>> from dataclasses import replace
+    >>> damper = ls.TorsionDamper(from_="crank", to="coupler", coefficient=0.2)
+    >>> worst = ls.peaks(replace(ls.example("press"), loads=[damper]), of=["load1_to_torque"])
+    >>> round(float(worst.load1_to_torque_peak), 2)  # N m
+    10.47
     """
 
     coefficient: Number = parameter("torsional_damping", at_least=0.0)
