@@ -81,3 +81,14 @@ def test_a_force_that_rises_only_just_before_friction_jams_the_machine():
     peaks = ls.peaks(scene, of=["F12x"])
     assert float(peaks.F12x_max) == pytest.approx(float(beside[2]), rel=1e-5)
     assert float(peaks.F12x_max_at) == pytest.approx(jam, abs=1e-6) and peaks.F12x_max >= beside[2]
+
+
+def test_trials_that_differ_by_rounding_alone_hide_no_peak():
+    """Where a piece starts at a narrow near-toggle, its parameter shows the summit beside it twice, around a dip."""
+    crank = ls.Link(0.38446641709615703, 1.1643321338097556, 0.01219397584956949, 0.3090761981568982, 69.68720050624808)
+    rod = ls.Link(0.38446905430651646, 1.9101761165790034, 0.03101184082502945, 0.2769315663345262, 0.0)
+    machine = ls.SliderCrank(crank, rod, 0.3653730903321438, 0.0, 0.000778554849111484, branch="crossed")
+    push = ls.Load("slider", force=(-23.4225323, 24.73770321))
+    scene = ls.Scene(machine, -18.81017668, 44.76925696, (0.0, -9.81), [push])
+    beside = ls.sweep(scene, 270.0 + np.linspace(0.0, 1e-4, 201), of=["F43"]).F43
+    assert float(beside.max()) <= float(ls.peaks(scene, of=["F43"]).F43_peak) * (1.0 + 1e-11)
