@@ -72,36 +72,49 @@ def four_bars(designs: int) -> ls.Scene:
     return ls.Scene(mechanism, omega2=30.0, alpha2=5.0, gravity=(0.0, -9.81))
 
 
-def test_evaluators_have_the_same_bits_compiled_and_interpreted():
-    """Also at the samples that share operations with those on the other side of the middle, and where the last design
-    stands in lanes that have none of their own; designs have two dims."""
-    scene, front, designs = four_bars(5), 8, 15
+def masses(designs: int) -> ls.Scene:
+    """Return masses of the coupler, each with its own centre of gravity, on one geometry."""
+    crank, coupler, rocker = (ls.Link(length, 1.0, 2e-3, 0.4 * length, 20.0) for length in (0.08, 0.22, 0.2))
+    mass, distance = (xr.DataArray(np.linspace(*ends, designs), dims="design") for ends in ((0.5, 2.0), (0.02, 0.2)))
+    coupler = replace(coupler, mass=mass, cg_distance=distance)
+    return ls.Scene(ls.FourBar(crank, coupler, rocker, 0.22), omega2=30.0, alpha2=5.0, gravity=(0.0, -9.81))
+
+
+@pytest.mark.parametrize("one_geometry", [False, True])
+def test_evaluators_have_the_same_bits_compiled_and_interpreted(one_geometry):
+    """Also at the samples that share operations with those on the other side of the middle, or with those of other
+    designs, and where the last design stands in lanes that have none of their own; designs have two dims."""
+    scene, front, designs = masses(5) if one_geometry else four_bars(5), 8, 15
     scene = replace(scene, omega2=xr.DataArray([20.0, 30.0, 40.0], dims="speed"))
     forms = tuple((name, form) for name, form in scene.inputs.forms if name not in scene.grid(1).names)
-    forms += (("half_tangent", ("theta2", "design")), ("far_half", ("theta2",)))
-    signals = ("F32", "T12", "theta4")
+    forms += (("half_tangent", ("theta2",) if one_geometry else ("theta2", "design")), ("far_half", ("theta2",)))
+    signals = ("F32", "T12", "F14y") if one_geometry else ("F32", "T12", "theta4")
     request = plan(scene.table.between_samples, (*signals, "near_toggle_near", "near_toggle_far"), forms)
     evaluators = Evaluators(request, signals)
     compiled, interpreted = evaluators.compiled, evaluators.interpreted
-    lanes, of_turn = compiled.lanes, np.empty(2 * PLACED * compiled.lanes)
-    abreast.place_samples(np.repeat([0.2, 1.0], lanes), lanes, grades(), of_turn)
+    assert (compiled.shared > 0) == one_geometry
+    lanes, places = compiled.lanes, 2 * PLACED * compiled.lanes
+    of_turn = np.zeros(places + compiled.shared)
+    assert abreast.place_samples(np.repeat([0.2, 1.0], lanes), lanes, grades(), of_turn) == 2 * lanes
+    assert abreast.place_samples(np.repeat([0.2, 1.0], lanes), lanes, grades(), of_turn) == 0
     values = [scene.inputs.fields[node.value].values for node in evaluators.inputs]
     starts = np.cumsum([0, *(value.size for value in values[:-1])])
     parameters = np.array([scene.inputs.sizes[dim] for dim in request.loops]), np.concatenate(values, axis=None), starts
     constants, rows = np.empty(len(evaluators.constants) * lanes), np.empty((SAMPLES + 1) * len(signals) * lanes)
     compiled.prepare(front, designs, *parameters, constants)
+    compiled.share(constants, of_turn)
     compiled.sample(constants, of_turn, rows)
-    places = np.array([np.linspace(-0.9, 0.9, lanes), np.zeros(lanes), np.arange(lanes) % 2.0, np.arange(lanes) % 3.0])
-    table = places.copy()
+    trials = np.array([np.linspace(-0.9, 0.9, lanes), np.zeros(lanes), np.arange(lanes) % 2.0, np.arange(lanes) % 3.0])
+    table = trials.copy()
     compiled.evaluate(constants, table, 0, 1, 2, 3, 0, lanes)
     for lane in range(lanes):
         own, own_rows = np.empty(interpreted.constants), np.empty(SAMPLES * len(signals))
         interpreted.prepare(min(front + lane, designs - 1), designs, *parameters, own)
-        interpreted.sample(own, of_turn[lane::lanes].copy(), own_rows)
-        interpreted.evaluate(own, places, 0, 1, 2, 3, lane, lane + 1)
+        interpreted.sample(own, of_turn[lane:places:lanes].copy(), own_rows)
+        interpreted.evaluate(own, trials, 0, 1, 2, 3, lane, lane + 1)
         np.testing.assert_array_equal(constants.reshape(-1, lanes)[:2, lane], own[:2])
         np.testing.assert_array_equal(rows.reshape(SAMPLES + 1, -1, lanes)[:SAMPLES, :, lane].ravel(), own_rows)
-    np.testing.assert_array_equal(table, places)
+    np.testing.assert_array_equal(table, trials)
 
 
 def test_numbers_that_designs_share_are_the_same_as_their_own():
@@ -114,6 +127,16 @@ def test_numbers_that_designs_share_are_the_same_as_their_own():
     xr.testing.assert_identical(peaks[0], peaks[1])
     for speed in range(2):
         xr.testing.assert_identical(peaks[0], peaks[2].isel(speed=speed))
+
+
+def test_designs_on_one_geometry_have_the_bits_of_those_on_equal_ones():
+    on_one = replace(
+        masses(50), loads=(ls.Load("rocker", torque=xr.DataArray(np.linspace(-9.0, 9.0, 50), dims="design")),)
+    )
+    ground = xr.DataArray(np.full(50, 0.22), dims="design")
+    on_equal = replace(on_one, mechanism=replace(on_one.mechanism, ground=ground))
+    one, equal = (ls.peaks(scene).drop_vars("ground", errors="ignore").drop_attrs() for scene in (on_one, on_equal))
+    xr.testing.assert_identical(one.drop_vars("status"), equal.drop_vars("status"))
 
 
 def test_samples_are_placed_by_the_near_toggles_with_one_more_on_either_side():
@@ -138,6 +161,9 @@ def test_of_three_summits_nearly_as_high_the_highest_is_the_peak():
     def prepare(front, designs, sizes, parameters, parameter_at, constants):
         constants[:] = 1.0, 1.0, parameters[front]
 
+    def share(constants, x):
+        assert len(x) == 2 * PLACED
+
     def sample(constants, x, rows):
         angles = 2.0 * np.arctan(x.reshape(2, PLACED)[:, 1:-1]) + [[0.0], [np.pi]]
         rows[:SAMPLES] = height(angles.ravel(), constants[2])
@@ -150,8 +176,8 @@ def test_of_three_summits_nearly_as_high_the_highest_is_the_peak():
     one = np.array([0], dtype=np.int64)
     with np.errstate(all="ignore"):
         abreast.search(
-            0, len(phase), len(phase), 1, True, False, np.array([len(phase)]), phase, one, grades(), prepare, sample,
-            evaluate, np.zeros((abreast.BLOCKS, 3)), np.zeros(2 * PLACED), np.zeros(SAMPLES + 1),
+            0, len(phase), len(phase), 1, True, False, np.array([len(phase)]), phase, one, grades(), prepare, share,
+            sample, evaluate, np.zeros((abreast.BLOCKS, 3)), np.zeros(2 * PLACED), np.zeros(SAMPLES + 1),
             np.zeros((abreast.STATE_ROWS, 1)), np.zeros((BRACKET_ROWS, abreast.ROOM)), np.zeros(3), best,
         )  # fmt: skip
     places = 2.0 * np.arctan(best[PEAK_X]) + np.pi * best[PEAK_FAR]

@@ -78,8 +78,8 @@ TRIED = (Z_LEFT, F_LEFT, Z_RIGHT, F_RIGHT, Z_MIDDLE, F_MIDDLE)
 
 
 def search(
-    first, last, designs, lanes, smooth, even, sizes, parameters, parameter_at, grades, prepare, sample, evaluate,
-    constants, x, rows, state, brackets, gathered, best
+    first, last, designs, lanes, smooth, even, sizes, parameters, parameter_at, grades, prepare, share, sample,
+    evaluate, constants, x, rows, state, brackets, gathered, best
 ):  # fmt: skip
     """Write the peaks of blocks `first` … `last` of designs to `best`: a column for each design of each signal, one
     signal after the other, each filled up to whole blocks. `even` signals are the same on both halves of the turn: the
@@ -96,7 +96,8 @@ def search(
         for block in range(start, stop):
             own = constants[block - start]
             call(prepare, (block * lanes, designs, sizes, parameters, parameter_at, own))
-            place_samples(own, lanes, grades, x)
+            if place_samples(own, lanes, grades, x) > 0:
+                call(share, (own, x))
             call(sample, (own, x, rows))
             if even:
                 compare_sample_of_half(rows[(HALF - 1) * columns :], 2 * HALF + 3, state, columns)
@@ -135,7 +136,8 @@ def search(
 
 def place_samples(constants, lanes, grades, x):
     """Place the samples of each half turn by the width of its near-toggle, with one more on either side; those that the
-    last block placed may be the right ones."""
+    last block placed may be the right ones. Return the number of lanes that got others."""
+    changed = 0
     for half in range(2):
         middle = (half * PLACED + 1 + HALF) * lanes
         for lane in range(lanes):
@@ -144,12 +146,14 @@ def place_samples(constants, lanes, grades, x):
                 grade += 1
                 scale *= 0.5
             if x[middle + lanes + lane] != grades[grade, 1]:
+                changed += 1
                 for k in range(HALF + 1):
                     x[middle - k * lanes + lane] = -grades[grade, k]
                     x[middle + k * lanes + lane] = grades[grade, k]
     for half in range(2):  # measured from the other middle, 180 degrees away, a tangent is minus its inverse
         for lane in range(lanes):
             x[half * PLACED * lanes + lane] = -1.0 / x[((1 - half) * PLACED + 2 * HALF) * lanes + lane]
+    return changed
 
 
 @around(NOTHING_YET)

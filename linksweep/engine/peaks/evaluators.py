@@ -2,6 +2,7 @@
 
     prepare(front, designs, sizes, parameters, parameter_at, constants)
                                                             numbers of designs `front` … from their parameters
+    share(constants, x)                                     numbers that all designs have in common at these samples
     sample(constants, x, rows)                              all signals at all samples of the turn
     evaluate(constants, table, x, value, far, signal, first, last)
                                                             one signal at one place in each lane `first` … `last`
@@ -11,6 +12,10 @@ The last takes the numbers of rows of a table: of the place, the value, the half
 Arrays have a row of lanes for each number, one after the other. `constants` begins with the widths of the near-toggles;
 `x` of `sample` has the tangents of samples of each half turn, with one more on either side. Those before the middle
 mirror those after it, and share all operations whose results are the same there, or opposite.
+
+Where no design dim enters the motion, as of many masses on one geometry, all designs have the same samples. `share`
+then computes once, whenever samples were placed, all that depends on nothing else: numbers behind the places in `x`,
+from which `sample` goes on.
 """
 
 from __future__ import annotations
@@ -20,6 +25,7 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cached_property
+from itertools import product
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -49,20 +55,25 @@ SOON = 2 * LANES
 """Designs from the first lane's to one whose parameters are fetched into the caches: that of the lanes after the next.
 """
 
+Pairs = Iterator[tuple[Any, Any, Values, Values]]
+"""Half turn and number of a sample from its middle on, and the values there and at its mirror."""
+
 
 class Functions(NamedTuple):
-    """The three functions, the number of their lanes, and that of the constants of a design."""
+    """The four functions, the number of their lanes, that of the constants of a design, and that of what all share."""
 
     lanes: int
     constants: int
+    shared: int
     prepare: Callable[..., Any]
+    share: Callable[..., Any]
     sample: Callable[..., Any]
     evaluate: Callable[..., Any]
 
     @property
     def passed(self) -> list[Any]:
-        """The three as a search takes them: compiled ones by their addresses."""
-        return [each.address if isinstance(each, MachineCode) else each for each in self[2:]]
+        """The four as a search takes them: compiled ones by their addresses."""
+        return [each.address if isinstance(each, MachineCode) else each for each in self[3:]]
 
 
 class Evaluators:
@@ -89,10 +100,23 @@ class Evaluators:
         used = {x for node in self.left for x in node.operands} | set(self.signals)
         self.kept = [node for node in [self.tangent, self.far, *self.ahead] if node in used]
         """The values that those take from the place and from the operations before."""
+        of_all = self._of_all()
+        self.own = [node for node in self.at_samples if node not in of_all]
+        """The operations at samples that each design does for itself."""
+        used = {x for node in self.own for x in node.operands} & of_all
+        self.shared = sorted(used, key=lambda node: node.position)
+        """The values that those take from what all designs have in common."""
 
     def _turns(self, node: Node) -> bool:
         """Return whether a node depends on the place."""
         return self.plan.index in node.dims
+
+    def _of_all(self) -> set[Node]:
+        """Return the nodes with the same value for all designs at a sample; none where those have samples of their
+        own."""
+        of_place = self.far.dims
+        alike = self.tangent.dims == of_place and all(signal.dims > of_place for signal in self.signals)
+        return {node for node in (self.tangent, self.far, *self.at_samples) if alike and node.dims == of_place}
 
     def _needed(self, nodes: list[Node]) -> list[Node]:
         """Return the operations at samples that lead to some of them, and these themselves."""
@@ -106,7 +130,7 @@ class Evaluators:
     @cached_property
     def interpreted(self) -> Functions:
         """The functions by the interpreter, for one lane: its constants are the widths, and the parameters as such."""
-        return Functions(1, 2 + len(self.inputs), self._prepare, self._sample, self._evaluate)
+        return Functions(1, 2 + len(self.inputs), 0, self._prepare, self._share, self._sample, self._evaluate)
 
     def _prepare(self, front: int, designs: int, sizes, parameters, parameter_at, constants: np.ndarray) -> None:
         digits = np.unravel_index(front, tuple(sizes))
@@ -117,6 +141,9 @@ class Evaluators:
             constants[2 + k] = parameters[parameter_at[k] + place]
         here = self._at(constants, np.zeros(1), 0.0)
         constants[:2] = [here[node].item() for node in self.constants[:2]]
+
+    def _share(self, constants: np.ndarray, x: np.ndarray) -> None:
+        """Do nothing: all is computed for each design."""
 
     def _sample(self, constants: np.ndarray, x: np.ndarray, rows: np.ndarray) -> None:
         values = self._at(constants, x.reshape(2, PLACED)[:, 1:-1].ravel(), np.repeat([0.0, 1.0], 2 * HALF))
@@ -148,7 +175,9 @@ class Evaluators:
         return Functions(
             LANES,
             len(self.constants),
+            4 * (HALF + 1) * len(self.shared),
             machine_code(self._emit_prepare, (INTEGER, INTEGER, INTEGERS, ROW, INTEGERS, ROW), text),
+            machine_code(self._emit_share, (ROW, ROW), text if self.shared else ""),
             machine_code(self._emit_sample, (ROW, ROW, ROW), text),
             machine_code(self._emit_evaluate, (ROW, TABLE, *[INTEGER] * 6), text),
         )
@@ -183,30 +212,65 @@ class Evaluators:
         for k, node in enumerate(self.constants):
             vectors.store(values[node], constants.data, integer(k * LANES))
 
+    def _emit_share(self, builder: Any, constants: Any, x: Any) -> None:
+        """Emit the numbers that all designs share at each sample and at its mirror, behind the places in `x`."""
+        if self.shared:
+            vectors = Instructions(builder)
+            with self._pairs(vectors, constants, x) as (turn, k, *pair):
+                places = self._of_pair(vectors, x, turn, k)
+                for values, node in product(pair, self.shared):
+                    value = vectors.wide(vectors.as_number(values[node]))
+                    builder.store(builder.extract_element(value, vectors.integer(0)), next(places))
+
     def _emit_sample(self, builder: Any, constants: Any, x: Any, rows: Any) -> None:
-        """Emit a loop over both half turns, and in it one over the samples from the middle on, each with its mirror."""
         vectors = Instructions(builder)
         integer, of = vectors.integer, builder.mul
-        size, half = integer(len(self.signals) * LANES), integer(HALF)
+        size = integer(len(self.signals) * LANES)
+        pairs = self._pairs_from_shared if self.shared else self._pairs
+        with pairs(vectors, constants, x) as (turn, k, here, there):
+            middle = builder.add(of(turn, integer(2 * HALF)), integer(HALF))
+            for values, sample in ((there, builder.sub(middle, k)), (here, builder.add(middle, k))):
+                for s, signal in enumerate(self.signals):
+                    vectors.store(values[signal], rows.data, builder.add(of(sample, size), integer(s * LANES)))
+
+    @contextmanager
+    def _pairs(self, vectors: Instructions, constants: Any, x: Any) -> Pairs:
+        """Emit a loop over both half turns, and in it one over the samples from the middle on; yield their numbers, and
+        the values at each and at its mirror."""
+        builder, integer = vectors.builder, vectors.integer
         with vectors.loop(integer(0), integer(2)) as (turn, _):
 
             def place(k: Any) -> Values:
-                at = builder.add(of(turn, integer(PLACED)), builder.add(integer(1 + HALF), k))
-                tangent = vectors.load(x.data, of(at, integer(LANES)))
+                at = builder.add(builder.mul(turn, integer(PLACED)), builder.add(integer(1 + HALF), k))
+                tangent = vectors.load(x.data, builder.mul(at, integer(LANES)))
                 return {self.tangent: tangent, self.far: builder.uitofp(turn, vectors.double)}
 
             with self._each(vectors, constants, integer(0), integer(HALF + 1), 1, place) as (k, here):
-                there = self._mirrored(vectors, here)
-                middle = builder.add(of(turn, integer(2 * HALF)), half)
-                for values, sample in ((there, builder.sub(middle, k)), (here, builder.add(middle, k))):
-                    for s, signal in enumerate(self.signals):
-                        vectors.store(values[signal], rows.data, builder.add(of(sample, size), integer(s * LANES)))
+                yield turn, k, here, self._mirrored(vectors, [*self.kept, *self.left], here, {})
 
-    def _mirrored(self, vectors: Instructions, here: Values) -> Values:
-        """Emit what is left to do at a place and at the opposite tangent, and return the values there; only operations
-        that are neither even nor odd are repeated."""
-        there = dict(here)
-        for node in [*self.kept, *self.left]:
+    @contextmanager
+    def _pairs_from_shared(self, vectors: Instructions, constants: Any, x: Any) -> Pairs:
+        """Do the same from what all designs share."""
+        builder, integer = vectors.builder, vectors.integer
+        with vectors.loop(integer(0), integer(2)) as (turn, _), vectors.loop(integer(0), integer(HALF + 1)) as (k, _):
+            places = self._of_pair(vectors, x, turn, k)
+            here, there = ({node: vectors.wide(builder.load(next(places))) for node in self.shared} for _ in range(2))
+            here |= self._row(vectors, constants, self.constants)
+            interpret(self.fixed, here, vectors.operators)
+            yield turn, k, here, self._mirrored(vectors, self.own, here, there)
+
+    def _of_pair(self, vectors: Instructions, x: Any, turn: Any, k: Any) -> Iterator[Any]:
+        """Yield the places of the numbers that all designs share at a sample, then of those at its mirror."""
+        builder, integer = vectors.builder, vectors.integer
+        pair = builder.add(builder.mul(turn, integer(HALF + 1)), k)
+        first = builder.add(integer(2 * PLACED * LANES), builder.mul(pair, integer(2 * len(self.shared))))
+        return (builder.gep(x.data, [builder.add(first, integer(n))]) for n in range(2 * len(self.shared)))
+
+    def _mirrored(self, vectors: Instructions, nodes: list[Node], here: Values, there: Values) -> Values:
+        """Emit operations that are left to do at a place and at the opposite tangent, and return the values there, some
+        of which are known; only operations that are neither even nor odd are repeated."""
+        there = here | there
+        for node in nodes:
             parity = self.parity[node]
             interpret([node] if node not in here else [], here, vectors.operators)
             if parity == 0:
@@ -265,6 +329,6 @@ class Evaluators:
         """Return a text that differs wherever the functions do."""
         nodes = {node: k for k, node in enumerate(self.plan.nodes)}
         lines = [(node.operator, node.value, [nodes[x] for x in node.operands]) for node in nodes]
-        roles = [[nodes[node] for node in role] for role in (self.inputs, self.constants, self.signals)]
+        roles = [[nodes[node] for node in role] for role in (self.inputs, self.constants, self.signals, self.shared)]
         dims = [[dim in node.dims for dim in self.plan.loops] for node in self.inputs]
         return f"{SOURCE} {HALF} {sorted(SLOW)} {lines} {roles} {dims}"

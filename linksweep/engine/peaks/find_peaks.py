@@ -48,7 +48,7 @@ class Peak(NamedTuple):
     evaluations: Field
 
 
-OF_DESIGNS = (INTEGERS, ROW, INTEGERS, TABLE, INTEGER, INTEGER, INTEGER, TABLE, ROW, ROW)
+OF_DESIGNS = (INTEGERS, ROW, INTEGERS, TABLE, INTEGER, INTEGER, INTEGER, INTEGER, TABLE, ROW, ROW)
 """Kinds of the arguments of a search that `laid_out` makes."""
 
 

@@ -73,7 +73,7 @@ class LaidOut(NamedTuple):
         return (
             np.array(self.shape, dtype=np.int64), *self.parameters, grades(), *self.functions.passed,
             np.zeros((blocks, constants)),
-            np.zeros(2 * search.PLACED * lanes),
+            np.zeros(2 * search.PLACED * lanes + self.functions.shared),
             np.zeros((search.SAMPLES + 1) * len(self.signals) * lanes),
         )  # fmt: skip
 

@@ -28,8 +28,8 @@ UNKNOWN, NONE, OPEN, FOUND = range(4)
 
 
 def find_zeros(
-    first, last, designs, lanes, sizes, parameters, parameter_at, grades, prepare, sample, evaluate, constants, x, rows,
-    zeros_at, gathered, zeros
+    first, last, designs, lanes, sizes, parameters, parameter_at, grades, prepare, share, sample, evaluate, constants,
+    x, rows, zeros_at, gathered, zeros
 ):  # fmt: skip
     """Write the zeros of pieces in blocks `first` … `last` to `zeros` (number, piece, nth): tangents, half turns."""
     for start in range(first, last, BLOCKS):
@@ -37,7 +37,8 @@ def find_zeros(
         for block in range(start, min(start + BLOCKS, last)):
             own = constants[block - start]
             call(prepare, (block * lanes, designs, sizes, parameters, parameter_at, own))
-            place_samples(own, lanes, grades, x)
+            if place_samples(own, lanes, grades, x) > 0:
+                call(share, (own, x))
             call(sample, (own, x, rows))
             for lane in range(lanes):
                 count = open_zeros(rows, x, lanes, lane, block * lanes + lane, zeros_at, count)

@@ -108,6 +108,9 @@ def zeros_of(height) -> np.ndarray:
     def prepare(first, designs, sizes, parameters, parameter_at, constants):
         constants[:] = 1.0
 
+    def share(constants, x):
+        pass
+
     def sample(constants, x, rows):
         angles = 2.0 * np.arctan(x.reshape(2, PLACED)[:, 1:-1]) + [[0.0], [np.pi]]
         rows[:SAMPLES] = height(angles.ravel())
@@ -119,7 +122,7 @@ def zeros_of(height) -> np.ndarray:
     one, places = np.zeros(1, dtype=np.int64), np.full((2, 1, zeros.MOST_ZEROS), np.nan)
     with np.errstate(all="ignore"):
         zeros.find_zeros(
-            0, 1, 1, 1, one + 1, np.zeros(1), one, laid_out.grades(), prepare, sample, evaluate,
+            0, 1, 1, 1, one + 1, np.zeros(1), one, laid_out.grades(), prepare, share, sample, evaluate,
             np.zeros((BLOCKS, 2)), np.zeros(2 * PLACED), np.zeros(SAMPLES + 1),
             np.zeros((zeros.ZERO_ROWS, 99)), np.zeros(2), places,
         )  # fmt: skip
