@@ -17,14 +17,13 @@ from benchmarks.timing import FASTER, Call, Row, cores, race
 
 
 def rows(size: Size) -> list[Row]:
-    many, one = scene(batch(size.designs, *ALL)), scene(GENERAL)
-    number, long = 100 * size.designs, size.largest_angles // 10
+    designs, number, long = 4 * size.designs, 100 * size.designs, size.largest_angles // 10
+    many, one, samples = scene(batch(designs, *ALL)), scene(GENERAL), designs * size.turn
     rockers = crank_rockers(number, 0.0)
     return [
         _row(f"ls.peaks, exact, {number:,} crank-rockers", partial(ls.peaks, rockers), few(size), goal=1.7),
-        _row("ls.peaks", partial(ls.peaks, many, theta2=size.turn), size, size.designs * size.turn),
-        _row("ls.sweep, many designs", partial(ls.sweep, many, size.turn, of=NINE), size, size.designs * size.turn),
-        _row("ls.sweep, one design", partial(ls.sweep, one, size.angles, of=NINE), size, size.angles),
+        _row(f"ls.peaks, {designs:,} designs", partial(ls.peaks, many, theta2=size.turn), few(size), samples),
+        _row(f"ls.sweep, {designs:,} designs", partial(ls.sweep, many, size.turn, of=NINE), few(size), samples),
         _row("ls.sweep, a million angles", partial(ls.sweep, one, long, of=NINE), few(size), long, goal=1.7),
         _memory(few(size), long),
     ]
