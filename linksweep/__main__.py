@@ -1,7 +1,5 @@
 """Run the command line as ``python -m linksweep``."""
 
-import sys
+from linksweep.cli.program import start
 
-from linksweep.cli.program import run
-
-sys.exit(run())
+start()

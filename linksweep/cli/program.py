@@ -2,11 +2,30 @@
 
 from __future__ import annotations
 
+import atexit
+import gc
+import os
 import sys
+from typing import NoReturn
+
+ALLOCATIONS = 100_000
+"""Objects made until garbage is looked for; Python's own 700 cost a short command a twentieth of its time."""
+
+
+def start() -> NoReturn:
+    """Run the command line, and end the process at once: Python would first take a thousand imported modules apart,
+    for a sixth of the time of `linksweep demo`."""
+    code = run()
+    atexit._run_exitfuncs()
+    for stream in (sys.stdout, sys.stderr):
+        if stream:  # None where it was closed before the start
+            stream.flush()
+    os._exit(code)
 
 
 def run() -> int:
     """Run the command line, and return its exit status."""
+    gc.set_threshold(ALLOCATIONS)
     # no command makes an array of dask's, and xarray would import dask for half a second to see whether one is there
     sys.modules.setdefault("dask", None)  # type: ignore[arg-type]
     from linksweep.cli.main import main

@@ -52,10 +52,12 @@ def show(options: argparse.Namespace, draw: Callable[[], Any]) -> None:
 
 
 def without_a_screen() -> None:
-    """Draw to files alone."""
+    """Draw to files alone, in the first font of matplotlib's list: it looks for all of them at each text."""
     import matplotlib as mpl
 
     mpl.use("Agg")
+    if mpl.rcParams["font.sans-serif"][0] == "DejaVu Sans":  # it comes with matplotlib
+        mpl.rcParams["font.sans-serif"] = ["DejaVu Sans"]
 
 
 def write_figure(figure: Figure, path: Path) -> None:

@@ -377,6 +377,13 @@ def test_a_demo_imports_neither_dask_nor_rooms_that_it_leaves_alone(tmp_path, mo
     assert unused.isdisjoint(done.stderr.split())
 
 
+def test_the_program_ends_at_once_after_what_is_to_be_done_at_the_end():
+    code = "import atexit, sys; from linksweep.cli import program; atexit.register(print, 'last words'); "
+    code += "program.run = lambda: print('result') or 3; program.start(); print('never')"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert (done.returncode, done.stdout, done.stderr) == (3, "result\nlast words\n", "")
+
+
 def test_the_command_runs_as_a_module(press):
     def run(*arguments):
         return subprocess.run([sys.executable, "-m", "linksweep", *arguments], capture_output=True, text=True)
