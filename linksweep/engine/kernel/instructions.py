@@ -13,12 +13,14 @@ from contextlib import contextmanager
 from functools import partial
 from typing import Any
 
+from linksweep.engine.kernel import ahead
+from linksweep.engine.kernel.ahead import chains
 from linksweep.engine.trace import arctangent
 from linksweep.engine.trace.operators import interpret, traced_arctangent
 
 REGISTER = 8
 """Doubles that fill a register of 512 bits."""
-SOURCE = inspect.getsource(sys.modules[__name__]) + inspect.getsource(arctangent)
+SOURCE = "".join(map(inspect.getsource, (sys.modules[__name__], ahead, arctangent)))
 """All that enters the machine code besides what is asked for."""
 
 
@@ -126,7 +128,8 @@ class Instructions:
     ) -> Iterator[tuple[Any, list[Any]]]:
         """Write a loop over integers, as `loop` does; it yields the integer and the vectors that `start` writes for it.
 
-        Each pass starts the next one: divisions and roots take long, and nothing of this pass waits for them.
+        Each pass starts the next one: divisions and roots take long, and nothing of this pass waits for them. Both are
+        written as one, the longest chains of instructions first. No pass may read what it stores.
         """
         builder = self.builder
         kept = [self.slot(self.wide(self.as_number(x))) for x in start(first)]
@@ -136,7 +139,10 @@ class Instructions:
             following = builder.select(builder.icmp_signed("<", following, last), following, k)
             for x, place in zip(start(following), kept, strict=True):
                 builder.store(self.wide(self.as_number(x)), place)
+            body = builder.block
             yield k, values
+            length = chains(body.instructions)
+            body.instructions.sort(key=lambda x: -length[x])  # stores remain last, in their order
 
     def slot(self, value: Any) -> Any:
         """Return a place in memory that holds a value."""

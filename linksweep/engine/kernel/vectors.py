@@ -15,7 +15,7 @@ samples side by side as the processor takes: nothing is left to a compiler that 
 last vector of a row ends with the row, and so repeats samples of the vector before it: rows have at least `LANES`
 samples, and no function changes a row that it reads.
 
-The first half of the operations may be done one vector ahead of the others, which then wait less for each other:
+Some of the operations may be done one vector ahead of the others, which then wait less for each other:
 
     def start(j):
         cos2 = profiles[0, j]

@@ -23,7 +23,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
-from linksweep.engine.kernel.ahead import first_half
+from linksweep.engine.kernel.ahead import done_ahead
 from linksweep.engine.trace.graph import Node
 from linksweep.engine.trace.plan import Plan
 
@@ -198,7 +198,7 @@ class Writer:
         self._function("rows", level)
         self._read_singles({*written, *operands(work)} - set(work))
         bounds = "0, samples" if self.plan.loops else "first, last"
-        if ahead := first_half(work):
+        if ahead := done_ahead(work):
             work = [node for node in work if node not in set(ahead)]
             kept = _in_order({*operands(work), *written} & set(ahead))
             before, names = set(self.known), [self.name(node) for node in kept]
