@@ -159,7 +159,8 @@ def _lapack(size: Size) -> Row:
 def _shared(size: Size) -> list[Row]:
     """Time a thousand masses, or speeds, of one geometry against a thousand geometries.
 
-    Exact peaks share the kinematics of the samples; the largest of samples is computed as sums of a few cycles.
+    Exact peaks share the kinematics of the samples, but not that of the trials about a peak: each design has its own.
+    The largest of samples is computed as sums of a few cycles.
     """
     jobs = {name: scene(batch(size.designs, *numbers)) for name, numbers in SHARED.items()}
     exact = {f"{size.designs} {name}": partial(ls.peaks, job, threads=1) for name, job in jobs.items()}
