@@ -53,8 +53,11 @@ def all_to_float64(values: Any, kind: str) -> Any:
 def _array(array: Any, kind: str) -> Any:
     if is_quantity(array):
         data = _in_unit(array.data, UNITS[kind])
-        attributes = {name: words for name, words in array.attrs.items() if name != "units"}
-        return array if data is array.data else array.copy(data=data).drop_attrs(deep=False).assign_attrs(attributes)
+        if data is array.data:
+            return array
+        converted = array.copy(data=data)
+        converted.attrs.pop("units", None)
+        return converted
     with np.errstate(over="ignore"):  # numbers beyond float64 become inf, which validation refuses
         return array.astype(float) if _is_real(array.dtype) and array.dtype != np.float64 else array
 

@@ -166,9 +166,10 @@ def test_quantities_of_pint_are_converted_in_every_parameter(name):
         _, kind = free(made)[path]
         unit = "" if kind == "dimensionless" else UNITS_OF_KINDS[kind].replace(" ", "*")
         quantity = UNITS.Quantity(np.array([value, value]), unit).to(OTHER_UNITS[kind])
-        array = xr.DataArray(quantity, dims="design", attrs={"units": OTHER_UNITS[kind]})
+        array = xr.DataArray(quantity, dims="design", attrs={"units": OTHER_UNITS[kind], "source": "drawing"})
         result = numbers(replaced(made, {path: array}))[path]
-        assert type(result.data) is np.ndarray and "units" not in result.attrs, path
+        assert type(result.data) is np.ndarray and result.attrs == {"source": "drawing"}, path
+        assert array.attrs["units"] == OTHER_UNITS[kind], path
         np.testing.assert_allclose(result.values, value, rtol=1e-15, err_msg=path)
         assert numbers(replaced(made, {path: quantity[0]}))[path] == pytest.approx(value, rel=1e-15), path
 
