@@ -22,6 +22,8 @@ LARGEST = 2**63 - 1
 """Largest integer of TOML."""
 UNITS_OF_TIME = ("ns", "us")
 """Units of times: in NetCDF, and in the text of a scene."""
+LONGEST_SPAN = np.timedelta64(2**63 // 1000, "us")
+"""Longest span of times: xarray counts them from the first one, in nanoseconds, and errs where int64 cannot hold it."""
 
 
 def name_problem(name: Any) -> str:
@@ -74,7 +76,11 @@ def _time_problem(times: np.ndarray) -> str:
     """Return which time a file cannot hold; nothing where it can hold all of them."""
     lost = np.array([not all(_holds(unit, time) for unit in UNITS_OF_TIME) for time in times.reshape(-1)], dtype=bool)
     words = "must be a time in whole microseconds between the years 1678 and 2262, or a text"
-    return f"the label {times.reshape(-1)[lost][0]}: {words}" if lost.any() else ""
+    if lost.any():
+        return f"the label {times.reshape(-1)[lost][0]}: {words}"
+    if times.size and np.ptp(times.astype("M8[us]")) > LONGEST_SPAN:
+        return f"the label {times.max()}: must be at most 292 years after {times.min()}, or a text"
+    return ""
 
 
 def _holds(unit: str, time: np.datetime64) -> bool:
