@@ -12,9 +12,10 @@ from linksweep.engine.peaks.brackets import BEST_ROWS, BRACKET_ROWS, PEAK, PEAK_
 from linksweep.engine.peaks.evaluators import Evaluators
 from linksweep.engine.peaks.laid_out import grades
 from linksweep.engine.peaks.lanewise import Around, Lanewise
-from linksweep.engine.peaks.search import HALF, PLACED, SAMPLES
+from linksweep.engine.peaks.search import HALF, SAMPLES
 from linksweep.engine.trace.plan import plan
 
+PLACED = 2 * HALF + 2
 LANEWISE = {name: value for name, value in vars(abreast).items() if isinstance(value, Lanewise)}
 SPECIAL = (0.0, -0.0, 1.0, np.inf, -np.inf, np.nan)
 
@@ -176,7 +177,7 @@ def test_of_three_summits_nearly_as_high_the_highest_is_the_peak():
     one = np.array([0], dtype=np.int64)
     with np.errstate(all="ignore"):
         abreast.search(
-            0, len(phase), len(phase), 1, True, False, np.array([len(phase)]), phase, one, grades(), prepare, share,
+            0, len(phase), len(phase), 1, True, np.array([len(phase)]), phase, one, grades(), prepare, share,
             sample, evaluate, np.zeros((abreast.BLOCKS, 3)), np.zeros(2 * PLACED), np.zeros(SAMPLES + 1),
             np.zeros((abreast.STATE_ROWS, 1)), np.zeros((BRACKET_ROWS, abreast.ROOM)), np.zeros(3), best,
         )  # fmt: skip

@@ -44,7 +44,7 @@ from linksweep.engine.peaks.brackets import (
     place_trials,
 )
 from linksweep.engine.peaks.lanewise import around, lanewise
-from linksweep.engine.peaks.search import GRADES, HALF, PLACED, SAMPLES, might_reach, noise
+from linksweep.engine.peaks.search import GRADES, HALF, SAMPLES, might_reach, noise
 
 EVALUATIONS = BEST_ROWS
 """Row of `best` after those of a refined bracket: the number of evaluations of a signal."""
@@ -78,12 +78,11 @@ TRIED = (Z_LEFT, F_LEFT, Z_RIGHT, F_RIGHT, Z_MIDDLE, F_MIDDLE)
 
 
 def search(
-    first, last, designs, lanes, smooth, even, sizes, parameters, parameter_at, grades, prepare, share, sample,
-    evaluate, constants, x, rows, state, brackets, gathered, best
+    first, last, designs, lanes, smooth, sizes, parameters, parameter_at, grades, prepare, share, sample, evaluate,
+    constants, x, rows, state, brackets, gathered, best
 ):  # fmt: skip
     """Write the peaks of blocks `first` … `last` of designs to `best`: a column for each design of each signal, one
-    signal after the other, each filled up to whole blocks. `even` signals are the same on both halves of the turn: the
-    samples of one are searched."""
+    signal after the other, each filled up to whole blocks."""
     columns = state.shape[1]
     signals = columns // lanes
     width = best.shape[1] // signals
@@ -99,60 +98,64 @@ def search(
             if place_samples(own, lanes, grades, x) > 0:
                 call(share, (own, x))
             call(sample, (own, x, rows))
-            if even:
-                compare_sample_of_half(rows[(HALF - 1) * columns :], 2 * HALF + 3, state, columns)
-            else:
-                compare_sample(rows, SAMPLES, state, columns)
-            for signal in range(signals):
-                pick_samples(rows, x, lanes, signal * lanes, state)
-            predict_vertices(state, columns)
-            place_left(state, columns)
-            call(evaluate, (own, state, PLACE, F_LEFT, HALF_TURN, NUMBER, 0, columns))
-            place_right(state, columns)
-            call(evaluate, (own, state, PLACE, F_RIGHT, HALF_TURN, NUMBER, 0, columns))
-            step_to_vertices(state, columns)
-            place_middle(state, columns)
-            call(evaluate, (own, state, PLACE, F_MIDDLE, HALF_TURN, NUMBER, 0, columns))
-            correct_vertices(state, columns)
-            place_last(state, columns)
-            for k in range(0, columns, lanes):
-                if last_trials(state, k, lanes) > 0:
-                    call(evaluate, (own, state, PLACE, F_LAST, HALF_TURN, NUMBER, k, k + lanes))
-            settle_peaks(state, columns)
+            compare_sample(rows, SAMPLES, state, columns)
+            for k in range(columns):
+                pick_sample(rows, x, HALF, lanes, columns, k, k % lanes, k, state)
+            try_vertices(own, state, columns, lanes, evaluate)
             for signal in range(signals):
                 column, tag = signal * lanes, signal * width + block * lanes
                 keep_peaks(state, column, lanes, best, tag)
                 for lane in range(lanes):
                     if not smooth or state[FINAL, column + lane] == 0.0:
                         if count + 2 * HALF > brackets.shape[1]:
-                            refine(brackets, count, lanes, width, start, constants, gathered, evaluate, best)
+                            refine(brackets, count, lanes, width, start * lanes, constants, gathered, evaluate, best)
                             count = 0
-                        own_tag = tag + lane
+                        k, own_tag = column + lane, tag + lane
+                        known = int(state[SUMMIT, k]) if smooth and state[CONFIRMED, k] > 0.0 else -1
                         count = open_brackets(
-                            rows, x, lanes, column + lane, lane, smooth, even, state, own_tag, brackets, count, best
+                            rows, x, HALF, lanes, columns, k, lane, known, False, signal, own_tag, brackets, count, best
                         )
-        refine(brackets, count, lanes, width, start, constants, gathered, evaluate, best)
+        refine(brackets, count, lanes, width, start * lanes, constants, gathered, evaluate, best)
+
+
+def try_vertices(constants, state, columns, lanes, evaluate):
+    """Predict the peaks from five samples about summits, and settle them by trials."""
+    predict_vertices(state, columns)
+    place_left(state, columns)
+    call(evaluate, (constants, state, PLACE, F_LEFT, HALF_TURN, NUMBER, 0, columns))
+    place_right(state, columns)
+    call(evaluate, (constants, state, PLACE, F_RIGHT, HALF_TURN, NUMBER, 0, columns))
+    step_to_vertices(state, columns)
+    place_middle(state, columns)
+    call(evaluate, (constants, state, PLACE, F_MIDDLE, HALF_TURN, NUMBER, 0, columns))
+    correct_vertices(state, columns)
+    place_last(state, columns)
+    for k in range(0, columns, lanes):
+        if last_trials(state, k, lanes) > 0:
+            call(evaluate, (constants, state, PLACE, F_LAST, HALF_TURN, NUMBER, k, k + lanes))
+    settle_peaks(state, columns)
 
 
 def place_samples(constants, lanes, grades, x):
     """Place the samples of each half turn by the width of its near-toggle, with one more on either side; those that the
     last block placed may be the right ones. Return the number of lanes that got others."""
-    changed = 0
-    for half in range(2):
-        middle = (half * PLACED + 1 + HALF) * lanes
+    changed, half = 0, grades.shape[1] - 1
+    placed = 2 * half + 2
+    for far in range(2):
+        middle = (far * placed + 1 + half) * lanes
         for lane in range(lanes):
             grade, scale = 0, 1.0  # the first scale that does not exceed the width
-            while constants[half * lanes + lane] < scale and grade < GRADES - 1:
+            while constants[far * lanes + lane] < scale and grade < GRADES - 1:
                 grade += 1
                 scale *= 0.5
             if x[middle + lanes + lane] != grades[grade, 1]:
                 changed += 1
-                for k in range(HALF + 1):
+                for k in range(half + 1):
                     x[middle - k * lanes + lane] = -grades[grade, k]
                     x[middle + k * lanes + lane] = grades[grade, k]
-    for half in range(2):  # measured from the other middle, 180 degrees away, a tangent is minus its inverse
+    for far in range(2):  # measured from the other middle, 180 degrees away, a tangent is minus its inverse
         for lane in range(lanes):
-            x[half * PLACED * lanes + lane] = -1.0 / x[((1 - half) * PLACED + 2 * HALF) * lanes + lane]
+            x[far * placed * lanes + lane] = -1.0 / x[((1 - far) * placed + 2 * half) * lanes + lane]
     return changed
 
 
@@ -162,12 +165,17 @@ def compare_sample(left, value, right, number, summit, reach, other):
     return with_summit(summit_height(left, value, right), number, summit, reach, other)
 
 
-@around(NOTHING_YET)
-def compare_sample_of_half(left, value, right, number, summit, reach, other):
-    """Do the same for the samples of half a turn, and the one before and the one after them, which are no summits."""
-    height = summit_height(left, value, right)
-    height = (number < 1.0).where(-math.inf, (number > 2.0 * HALF + 1.0).where(-math.inf, height))
-    return with_summit(height, number + (HALF - 1.0), summit, reach, other)
+def comparison_of_half(half):
+    """Return `compare_sample` for signals that are the same on both halves of a turn: the samples of one, and the one
+    before and the one after them, which are no summits."""
+
+    @around(NOTHING_YET)
+    def compare(left, value, right, number, summit, reach, other):
+        height = summit_height(left, value, right)
+        height = (number < 1.0).where(-math.inf, (number > 2.0 * half + 1.0).where(-math.inf, height))
+        return with_summit(height, number + (half - 1.0), summit, reach, other)
+
+    return compare
 
 
 def summit_height(left, value, right):
@@ -182,21 +190,18 @@ def with_summit(height, number, summit, reach, other):
     return best.where(number, summit), best.where(height, reach), (other < less).where(less, other)
 
 
-def pick_samples(rows, x, lanes, column, state):
-    """Copy five samples about the best summit of a signal in each lane, and the places of three; no peak is final near
-    the ends of a half turn."""
-    columns = state.shape[1]
-    for lane in range(lanes):
-        k = column + lane
-        j = int(state[SUMMIT, k])
-        half = 1 if j >= 2 * HALF else 0
-        inside = 2 <= j - 2 * HALF * half < 2 * HALF - 2
-        j, half = (j, half) if inside else (HALF, 0)
-        state[HALF_TURN, k], state[SOUND, k] = half, inside
-        for near in range(5):
-            state[SAMPLED + near, k] = rows[(j + near - 2) * columns + k]
-        for near in range(3):
-            state[PLACES + near, k] = x[(j + near + 2 * half) * lanes + lane]
+def pick_sample(rows, x, half, lanes, columns, column, lane, k, state):
+    """Copy five samples about the best summit in a column, and the places of three; no peak is final near the ends of
+    a half turn, which has so many samples on either side of its middle."""
+    j = int(state[SUMMIT, k])
+    far = 1 if j >= 2 * half else 0
+    inside = 2 <= j - 2 * half * far < 2 * half - 2
+    j, far = (j, far) if inside else (half, 0)
+    state[HALF_TURN, k], state[SOUND, k] = far, inside
+    for near in range(5):
+        state[SAMPLED + near, k] = rows[(j + near - 2) * columns + column]
+    for near in range(3):
+        state[PLACES + near, k] = x[(j + near + 2 * far) * lanes + lane]
 
 
 @lanewise(FIVE, (VERTEX, CURVATURE, THIRD, Z_LEFT, Z_RIGHT))
@@ -284,45 +289,46 @@ def settle_peaks(
     best = larger(f_right, larger(f_left, best))
     floor = NOISE * larger(abs(f1), larger(abs(f2), abs(f3)))
     beyond = larger(gain + loss, floor) + tolerance
-    return best, place_at(x1, x2, x3, vertex), far, beyond, SAMPLES + tried, final, confirmed
+    return best, place_at(x1, x2, x3, vertex), far, beyond, tried, final, confirmed
 
 
 def keep_peaks(state, column, lanes, best, tag):
-    """Copy the peaks of one signal."""
+    """Copy the peaks of one signal, and count their samples."""
     for row in range(len(best)):
         for lane in range(lanes):
             best[row, tag + lane] = state[row, column + lane]
+    for lane in range(lanes):
+        best[EVALUATIONS, tag + lane] += SAMPLES
 
 
-def open_brackets(rows, x, lanes, k, lane, smooth, even, state, tag, brackets, count, best):
-    """Open brackets about all summits of a signal that may exceed its peak so far, or else its highest sample; return
-    their number."""
-    columns, confirmed = state.shape[1], smooth and state[CONFIRMED, k] > 0.0
+def open_brackets(rows, x, half, lanes, columns, k, lane, known, even, signal, tag, brackets, count, best):
+    """Open brackets about all summits of a signal that may exceed its peak so far, that of the `known` summit, or else
+    its highest sample (−1: none is known); return their number. `even` signals are the same on both halves."""
+    samples, confirmed = 4 * half, known >= 0
     if not confirmed:
         top, at = -math.inf, 0
-        for j in range(SAMPLES):
+        for j in range(samples):
             if rows[j * columns + k] > top:
                 top, at = rows[j * columns + k], j
-        floor = noise(sample_of(rows, at - 1, columns, k), top, sample_of(rows, at + 1, columns, k))
+        floor = noise(sample_of(rows, at - 1, samples, columns, k), top, sample_of(rows, at + 1, samples, columns, k))
         best[PEAK, tag], best[BEYOND, tag] = top if top > -math.inf else math.nan, 10.0 * floor
-        half = at // (2 * HALF)
-        best[PEAK_X, tag], best[PEAK_FAR, tag] = x[(at + 1 + 2 * half) * lanes + lane], float(half)
+        far = at // (2 * half)
+        best[PEAK_X, tag], best[PEAK_FAR, tag] = x[(at + 1 + 2 * far) * lanes + lane], float(far)
     top = best[PEAK, tag]
     if not abs(top) < math.inf:
         return count
-    known = int(state[SUMMIT, k]) if confirmed else -1
-    first, last = (HALF, 3 * HALF) if even else (0, SAMPLES - 1)
-    left, value = sample_of(rows, first - 1, columns, k), sample_of(rows, first, columns, k)
+    first, last = (half, 3 * half) if even else (0, samples - 1)
+    left, value = sample_of(rows, first - 1, samples, columns, k), sample_of(rows, first, samples, columns, k)
     for j in range(first, last + 1):
-        right = sample_of(rows, j + 1, columns, k)
+        right = sample_of(rows, j + 1, samples, columns, k)
         floor = noise(left, value, right)
         least = top + (RISE * abs(top) if confirmed else 10.0 * floor)
         if left < value and value >= right and j != known and might_reach(left, value, right, 1.0) > least:
-            half = j // (2 * HALF)
+            far = j // (2 * half)
             for near in range(3):
-                brackets[XA + 2 * near, count] = x[(j + near + 2 * half) * lanes + lane]
+                brackets[XA + 2 * near, count] = x[(j + near + 2 * far) * lanes + lane]
             brackets[FA, count], brackets[FB, count], brackets[FC, count] = left, value, right
-            brackets[FAR, count], brackets[SIGNAL, count] = float(half), state[NUMBER, k]
+            brackets[FAR, count], brackets[SIGNAL, count] = float(far), float(signal)
             brackets[TAG, count], brackets[FLOOR, count] = tag, floor
             width = brackets[XC, count] - brackets[XA, count]
             brackets[WIDTH, count], brackets[FIRST_WIDTH, count] = 4.0 * width, width  # 4.0: not counted as slow
@@ -331,9 +337,9 @@ def open_brackets(rows, x, lanes, k, lane, smooth, even, state, tag, brackets, c
     return count
 
 
-def sample_of(rows, j, columns, k):
+def sample_of(rows, j, samples, columns, k):
     """Return a sample of one signal and lane, around the turn; −inf where there is no value."""
-    value = rows[(j + SAMPLES) % SAMPLES * columns + k]
+    value = rows[(j + samples) % samples * columns + k]
     return value if value == value else -math.inf
 
 
@@ -346,7 +352,8 @@ def refine(brackets, count, lanes, width, start, constants, gathered, evaluate, 
         for front in range(0, count, lanes):
             for lane in range(lanes):
                 tag = int(brackets[TAG, min(front + lane, count - 1)])
-                own, its = constants[tag % width // lanes - start], tag % lanes
+                place = tag % width - start
+                own, its = constants[place // lanes], place % lanes
                 for row in range(len(gathered) // lanes):
                     gathered[row * lanes + lane] = own[row * lanes + its]
                 if front + lane < count:

@@ -36,7 +36,7 @@ from linksweep.engine.kernel.instructions import REGISTER as LANES
 from linksweep.engine.kernel.instructions import Instructions
 from linksweep.engine.kernel.machine_code import INTEGER, INTEGERS, ROW, TABLE, MachineCode, machine_code
 from linksweep.engine.peaks.lanewise import Values
-from linksweep.engine.peaks.search import HALF, PLACED, SAMPLES
+from linksweep.engine.peaks.search import HALF, PLACED
 from linksweep.engine.trace.graph import Node
 from linksweep.engine.trace.operators import interpret
 from linksweep.engine.trace.parity import parities
@@ -146,9 +146,10 @@ class Evaluators:
         """Do nothing: all is computed for each design."""
 
     def _sample(self, constants: np.ndarray, x: np.ndarray, rows: np.ndarray) -> None:
-        values = self._at(constants, x.reshape(2, PLACED)[:, 1:-1].ravel(), np.repeat([0.0, 1.0], 2 * HALF))
+        places = x.reshape(2, -1)[:, 1:-1]
+        values = self._at(constants, places.ravel(), np.repeat([0.0, 1.0], places.shape[1]))
         for k, signal in enumerate(self.signals):
-            rows[k : SAMPLES * len(self.signals) : len(self.signals)] = values[signal].ravel()
+            rows[k : places.size * len(self.signals) : len(self.signals)] = values[signal].ravel()
 
     def _evaluate(self, constants, table, x: int, value: int, far: int, signal: int, first: int, last: int) -> None:
         lanes = table[:, first:last]
@@ -228,7 +229,8 @@ class Evaluators:
         size = integer(len(self.signals) * LANES)
         pairs = self._pairs_from_shared if self.shared else self._pairs
         with pairs(vectors, constants, x) as (turn, k, here, there):
-            middle = builder.add(of(turn, integer(2 * HALF)), integer(HALF))
+            half = self._half(vectors, x)
+            middle = builder.add(of(turn, of(integer(2), half)), half)
             for values, sample in ((there, builder.sub(middle, k)), (here, builder.add(middle, k))):
                 for s, signal in enumerate(self.signals):
                     vectors.store(values[signal], rows.data, builder.add(of(sample, size), integer(s * LANES)))
@@ -238,15 +240,24 @@ class Evaluators:
         """Emit a loop over both half turns, and in it one over the samples from the middle on; yield their numbers, and
         the values at each and at its mirror."""
         builder, integer = vectors.builder, vectors.integer
+        beyond = builder.add(self._half(vectors, x), integer(1))
         with vectors.loop(integer(0), integer(2)) as (turn, _):
 
             def place(k: Any) -> Values:
-                at = builder.add(builder.mul(turn, integer(PLACED)), builder.add(integer(1 + HALF), k))
+                at = builder.add(builder.mul(turn, builder.mul(integer(2), beyond)), builder.add(beyond, k))
                 tangent = vectors.load(x.data, builder.mul(at, integer(LANES)))
                 return {self.tangent: tangent, self.far: builder.uitofp(turn, vectors.double)}
 
-            with self._each(vectors, constants, integer(0), integer(HALF + 1), 1, place) as (k, here):
+            with self._each(vectors, constants, integer(0), beyond, 1, place) as (k, here):
                 yield turn, k, here, self._mirrored(vectors, [*self.kept, *self.left], here, {})
+
+    def _half(self, vectors: Instructions, x: Any) -> Any:
+        """Emit the number of samples on either side of the middle of a half turn: on pieces that for which places have
+        room."""
+        if not self.even:
+            return vectors.integer(HALF)
+        placed = vectors.builder.udiv(x.shape[0], vectors.integer(2 * LANES))
+        return vectors.builder.sub(vectors.builder.udiv(placed, vectors.integer(2)), vectors.integer(1))
 
     @contextmanager
     def _pairs_from_shared(self, vectors: Instructions, constants: Any, x: Any) -> Pairs:

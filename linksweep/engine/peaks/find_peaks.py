@@ -11,7 +11,7 @@ import numpy as np
 
 from linksweep.engine.kernel.machine_code import INTEGER, INTEGERS, ROW, TABLE, MachineCode
 from linksweep.engine.kernel.translate import translated
-from linksweep.engine.peaks import abreast, brackets, search, zeros
+from linksweep.engine.peaks import abreast, brackets, on_pieces, search, zeros
 from linksweep.engine.peaks.brackets import (
     BEST_ROWS,
     BRACKET_ROWS,
@@ -21,7 +21,7 @@ from linksweep.engine.peaks.brackets import (
     TRIALS,
     X1,
 )
-from linksweep.engine.peaks.laid_out import WIDTHS, laid_out
+from linksweep.engine.peaks.laid_out import WIDTHS, LaidOut, laid_out
 from linksweep.engine.peaks.lanewise import Lanewise
 from linksweep.engine.run import Field, Fields, Sizes, over_threads
 from linksweep.engine.trace.plan import Plan
@@ -30,6 +30,8 @@ SIGNALS_AT_ONCE = 16
 """Signals searched together."""
 INTERPRETED_SAMPLES = 100_000
 """Samples that a search along paths may evaluate interpreted."""
+PIECES_TOGETHER = 256
+"""Pieces of whole designs that are searched together, about: their samples stay in the caches."""
 DESIGNS_PER_THREAD = 1000
 """Designs that pay for another thread."""
 
@@ -55,7 +57,15 @@ OF_DESIGNS = (INTEGERS, ROW, INTEGERS, TABLE, INTEGER, INTEGER, INTEGER, INTEGER
 @cache
 def compiled_search() -> MachineCode:
     """Return `abreast.search` as machine code."""
-    return translated(abreast.search, (*[INTEGER] * 6, *OF_DESIGNS, TABLE, TABLE, ROW, TABLE))
+    return translated(abreast.search, (*[INTEGER] * 5, *OF_DESIGNS, TABLE, TABLE, ROW, TABLE))
+
+
+@cache
+def compiled_search_on_pieces() -> MachineCode:
+    """Return `on_pieces.search` as machine code."""
+    tables = (*[TABLE] * 5, ROW, TABLE, TABLE, ROW, TABLE)
+    kinds = (INTEGER, INTEGER, INTEGERS, INTEGERS, INTEGER, *OF_DESIGNS[:-3], *tables)
+    return translated(on_pieces.search, kinds)
 
 
 @cache
@@ -65,7 +75,12 @@ def compiled_zeros() -> MachineCode:
 
 
 def find_peaks(
-    plan: Plan, signals: tuple[str, ...], inputs: Fields, sizes: Sizes, smooth: bool, threads: int | None
+    plan: Plan,
+    signals: tuple[str, ...],
+    inputs: Fields,
+    sizes: Sizes,
+    smooth: bool,
+    threads: int | None,
 ) -> dict[str, Peak]:
     """Return the largest value of each signal over the turn, for every design; `smooth` tells that none has jumps or
     kinks."""
@@ -75,15 +90,13 @@ def find_peaks(
     peaks: dict[str, Peak] = {}
     for group in together.values():
         for first in range(0, len(group), SIGNALS_AT_ONCE):
-            peaks |= _peaks(
-                plan.only((*group[first : first + SIGNALS_AT_ONCE], *WIDTHS)), inputs, sizes, smooth, threads
-            )
+            request = plan.only((*group[first : first + SIGNALS_AT_ONCE], *WIDTHS))
+            peaks |= _peaks(request, laid_out(request, inputs, sizes), smooth, threads)
     return peaks
 
 
-def _peaks(plan: Plan, inputs: Fields, sizes: Sizes, smooth: bool, threads: int | None) -> dict[str, Peak]:
+def _peaks(plan: Plan, designs: LaidOut, smooth: bool, threads: int | None) -> dict[str, Peak]:
     """Return the peaks of a plan's signals, which all have the same dims."""
-    designs = laid_out(plan, inputs, sizes)
     signals, lanes, blocks = designs.signals, designs.lanes, designs.blocks
     run: Callable = compiled_search() if designs.compiled else abreast.search
     columns = lanes * len(signals)
@@ -91,16 +104,63 @@ def _peaks(plan: Plan, inputs: Fields, sizes: Sizes, smooth: bool, threads: int 
 
     def work(first: int, last: int) -> None:
         run(
-            first, last, designs.designs, lanes, smooth, designs.even, *designs.arguments(first, last),
+            first, last, designs.designs, lanes, smooth, *designs.arguments(first, last),
             np.zeros((abreast.STATE_ROWS, columns)), np.zeros((BRACKET_ROWS, abreast.ROOM)), designs.gathered, best,
         )  # fmt: skip
 
     with np.errstate(all="ignore"):
         over_threads(work, blocks, 1 + designs.designs // DESIGNS_PER_THREAD, threads)
+    return _of_designs(designs, best, plan.loops)
+
+
+def find_peaks_on_pieces(
+    plan: Plan,
+    signals: tuple[str, ...],
+    inputs: Fields,
+    dim: str,
+    owners: np.ndarray,
+    half: int,
+    threads: int | None,
+) -> dict[str, Peak]:
+    """Return the largest value of each signal on every piece, or a sample of it where another piece of the same design
+    has a larger one.
+
+    Pieces lie along `dim`; `owners` are their designs, in order; `half` is how many samples there are on either side of
+    the middle of each half turn that follows a piece.
+    """
+    peaks: dict[str, Peak] = {}
+    for first in range(0, len(signals), SIGNALS_AT_ONCE):
+        request = plan.only((*signals[first : first + SIGNALS_AT_ONCE], *WIDTHS))
+        pieces = laid_out(request, inputs, {dim: len(owners)}, half)
+        best = _best_on_pieces(pieces, owners.astype(np.int64), threads)
+        peaks |= _of_designs(pieces, best, request.loops)
+    return peaks
+
+
+def _best_on_pieces(pieces: LaidOut, owners: np.ndarray, threads: int | None) -> np.ndarray:
+    """Return the results of a search on pieces, a column for each piece of each signal, one signal after the other."""
+    run: Callable = compiled_search_on_pieces() if pieces.compiled else on_pieces.search
+    starts = np.flatnonzero(np.diff(owners, prepend=-1))
+    bounds = np.append(starts[:: max(1, PIECES_TOGETHER * len(starts) // max(1, len(owners)))], len(owners))
+    most = int(np.diff(bounds).max(initial=0))
+    blocks = -(-most // pieces.lanes)
+    best = np.empty((BEST_ROWS + 1, len(pieces.signals) * len(owners)))
+
+    def work(first: int, last: int) -> None:
+        run(first, last, bounds, owners, pieces.lanes, *pieces.arguments_of_pieces(blocks, most), best)
+
+    with np.errstate(all="ignore"):
+        over_threads(work, len(bounds) - 1, 1 + len(starts) // DESIGNS_PER_THREAD, threads)
+    return best
+
+
+def _of_designs(designs: LaidOut, best: np.ndarray, dims: tuple[str, ...]) -> dict[str, Peak]:
+    """Return the results of designs, whose columns may fill whole blocks."""
+    signals = designs.signals
     stored = best.reshape(len(best), len(signals), -1)[..., : designs.designs]
     stored = stored.reshape(*stored.shape[:2], *designs.shape)
     return {
-        signal: Peak(*(Field(plan.loops, stored[row, k, ...]) for row in range(len(stored))))
+        signal: Peak(*(Field(dims, stored[row, k, ...]) for row in range(len(stored))))
         for k, signal in enumerate(signals)
     }
 

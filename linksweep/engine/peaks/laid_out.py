@@ -10,7 +10,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from linksweep.engine.patience import Patience
-from linksweep.engine.peaks import abreast, search
+from linksweep.engine.peaks import abreast, on_pieces, search
+from linksweep.engine.peaks.brackets import BRACKET_ROWS
 from linksweep.engine.peaks.evaluators import FAR_WIDTH, NEAR_WIDTH, Evaluators, Functions
 from linksweep.engine.run import Fields, Sizes, flat, ordered
 from linksweep.engine.trace.plan import Plan
@@ -44,11 +45,12 @@ class LaidOut(NamedTuple):
     """Designs of a plan, counted row-major over its loops, and the functions that evaluate `signals` of them."""
 
     signals: tuple[str, ...]
-    even: bool
     functions: Functions
     shape: tuple[int, ...]
     parameters: tuple[np.ndarray, ...]
     """All parameters, and where each starts."""
+    half: int
+    """Samples on either side of the middle of each half turn."""
 
     @property
     def lanes(self) -> int:
@@ -71,10 +73,24 @@ class LaidOut(NamedTuple):
         lanes, constants = self.lanes, self.functions.constants * self.lanes
         blocks = min(last - first, abreast.BLOCKS)
         return (
-            np.array(self.shape, dtype=np.int64), *self.parameters, grades(), *self.functions.passed,
+            np.array(self.shape, dtype=np.int64), *self.parameters, grades(self.half), *self.functions.passed,
             np.zeros((blocks, constants)),
-            np.zeros(2 * search.PLACED * lanes + self.functions.shared),
-            np.zeros((search.SAMPLES + 1) * len(self.signals) * lanes),
+            np.zeros(2 * (2 * self.half + 2) * lanes + self.functions.shared),
+            np.zeros((4 * self.half + 1) * len(self.signals) * lanes),
+        )  # fmt: skip
+
+    def arguments_of_pieces(self, blocks: int, pieces: int) -> tuple[Any, ...]:
+        """Return the arguments of a search of `on_pieces` that follow the lanes, but the results, with new arrays to
+        work in: for groups of designs of so many blocks, and so many pieces, at most."""
+        lanes, signals, constants = self.lanes, len(self.signals), self.functions.constants * self.lanes
+        return (
+            np.array(self.shape, dtype=np.int64), *self.parameters, grades(self.half), *self.functions.passed,
+            np.zeros((blocks, constants)),
+            np.zeros((blocks, 2 * (2 * self.half + 2) * lanes)),
+            np.zeros((blocks, (4 * self.half + 1) * signals * lanes)),
+            np.zeros((abreast.STATE_ROWS, signals * lanes)), np.zeros((abreast.STATE_ROWS, lanes)),
+            np.zeros(pieces * signals), np.zeros((on_pieces.SUMMIT_ROWS, pieces * signals)),
+            np.zeros((BRACKET_ROWS, abreast.ROOM)), self.gathered,
         )  # fmt: skip
 
     @property
@@ -83,18 +99,18 @@ class LaidOut(NamedTuple):
         return np.zeros(self.functions.constants * self.lanes)
 
 
-def laid_out(plan: Plan, inputs: Fields, sizes: Sizes) -> LaidOut:
+def laid_out(plan: Plan, inputs: Fields, sizes: Sizes, half: int = search.HALF) -> LaidOut:
     """Return the designs of a plan, whose outputs are signals, all with the same dims, and widths of near-toggles."""
     signals = tuple(name for name in plan.outputs if name not in WIDTHS)
     ready, shape = searcher(plan, signals), tuple(sizes[dim] for dim in plan.loops)
     nodes = ready.evaluators.inputs
     parameters, parameter_at = flat([ordered(plan, inputs[node.value]) for node in nodes])
     functions = ready.functions(math.prod(shape))
-    return LaidOut(signals, ready.evaluators.even, functions, shape, (parameters, parameter_at[:-1]))
+    return LaidOut(signals, functions, shape, (parameters, parameter_at[:-1]), half)
 
 
-@lru_cache(maxsize=1)
-def grades() -> np.ndarray:
+@lru_cache(maxsize=2)
+def grades(half: int = search.HALF) -> np.ndarray:
     """Return the half-angle tangents x of the samples of half a turn from its middle on, for each scale s of the grade;
     both ends are 1.
 
@@ -102,7 +118,7 @@ def grades() -> np.ndarray:
     40 degrees apart.
     """
     scale = 0.5 ** np.arange(search.GRADES)[:, None]
-    part, end = np.arange(search.HALF + 1) / search.HALF, np.arcsinh(1.0 / scale)
+    part, end = np.arange(half + 1) / half, np.arcsinh(1.0 / scale)
     y = np.minimum(part / (1.0 - search.EVENLY), 1.0) * end
     for _ in range(NEWTON_STEPS):
         error = (1.0 - search.EVENLY) * y / end + search.EVENLY * scale * np.sinh(y) - part

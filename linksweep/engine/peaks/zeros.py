@@ -11,7 +11,6 @@ Source: Dowell and Jarratt, A modified regula falsi method, BIT 11 (1971).
 
 from linksweep.engine.kernel.instructions import call
 from linksweep.engine.peaks.abreast import BLOCKS, place_samples
-from linksweep.engine.peaks.search import HALF
 
 MOST_ZEROS = 12
 """Zeros of one piece, at most."""
@@ -41,7 +40,8 @@ def find_zeros(
                 call(share, (own, x))
             call(sample, (own, x, rows))
             for lane in range(lanes):
-                count = open_zeros(rows, x, lanes, lane, block * lanes + lane, zeros_at, count)
+                owner = block * lanes + lane
+                count = open_zeros(rows, x, grades.shape[1] - 1, lanes, lane, owner, zeros_at, count)
         evaluate_trials(zeros_at, count, lanes, start, constants, gathered, evaluate)
         keep_vertices(zeros_at, count)
         count = drop_closed(zeros_at, count, zeros)
@@ -56,15 +56,15 @@ def find_zeros(
             count = drop_closed(zeros_at, count, zeros)
 
 
-def open_zeros(rows, x, lanes, lane, owner, zeros_at, count):
+def open_zeros(rows, x, half, lanes, lane, owner, zeros_at, count):
     """Open brackets of zeros between samples of a lane, and beside samples that are nearest to zero; return their
     number."""
-    for j in range(HALF, 3 * HALF):
-        half = j // (2 * HALF)
-        at = (j + 1 + 2 * half) * lanes + lane
+    for j in range(half, 3 * half):
+        far = j // (2 * half)
+        at = (j + 1 + 2 * far) * lanes + lane
         here, ahead = rows[j * lanes + lane], rows[(j + 1) * lanes + lane]
         if here == 0.0 or here * ahead < 0.0:
-            count = open_zero(zeros_at, count, x[at], here, x[at + lanes], ahead, x[at], half, owner, OPEN)
+            count = open_zero(zeros_at, count, x[at], here, x[at + lanes], ahead, x[at], far, owner, OPEN)
         before = rows[(j - 1) * lanes + lane]
         if before * here > 0.0 and here * ahead > 0.0 and abs(here) < abs(before) and abs(here) < abs(ahead):
             step = 0.5 * (before - ahead) / (before + ahead - 2.0 * here)
@@ -73,7 +73,7 @@ def open_zeros(rows, x, lanes, lane, owner, zeros_at, count):
                 for side in (-1, 1):
                     end = at + side * lanes
                     value = before if side < 0 else ahead
-                    count = open_zero(zeros_at, count, vertex, here, x[end], value, vertex, half, owner, UNKNOWN)
+                    count = open_zero(zeros_at, count, vertex, here, x[end], value, vertex, far, owner, UNKNOWN)
     return count
 
 

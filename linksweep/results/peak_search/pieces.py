@@ -8,6 +8,7 @@ of many designs are searched side by side, each as a turn that follows it there 
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import lru_cache
 from typing import NamedTuple
@@ -15,7 +16,8 @@ from typing import NamedTuple
 import numpy as np
 
 from linksweep.engine.peaks.evaluators import ALONG, END, FAR, FAR_WIDTH, NEAR_WIDTH, TANGENT
-from linksweep.engine.peaks.find_peaks import Peak, find_peaks, zeros_of_pieces
+from linksweep.engine.peaks.find_peaks import Peak, find_peaks_on_pieces, zeros_of_pieces
+from linksweep.engine.peaks.search import FEW, HALF
 from linksweep.engine.quantity import Row, Table
 from linksweep.engine.run import Fields, evaluate
 from linksweep.engine.trace.plan import Plan, plan
@@ -40,6 +42,8 @@ MIDDLE, ANGLE = "piece_middle", "angle_on_piece"
 """Input of a piece with loads over the angle, its middle as such a tangent; and the angle from there [rad]."""
 LOADED_AT_ONCE = 2048
 """Designs with loads over the angle whose pieces are searched together: they have more."""
+NARROWEST = 0.02
+"""Width of a near-toggle below which a design has many samples on each of its pieces."""
 NARROW = 0.5
 """Width of a near-toggle, as tangent of half the angle, below which pieces end at it."""
 BORDERS = np.array([90.0, 270.0])
@@ -116,12 +120,22 @@ def designs_without_jams(scene: Scene, designs: Array) -> Array:
 def follow_pieces(scene: Scene, designs: Array, peaks: dict[str, SignalPeak], threads: int | None) -> None:
     """Write the peaks of designs, from a search of their pieces."""
     at_once = AT_ONCE if scene.steady else LOADED_AT_ONCE
-    for group in groups(scene, tuple(peaks), designs, at_once, at_once) if peaks else ():
-        pieces = _pieces(group, threads)
-        request, inputs = _evaluated(group, pieces, tuple(peaks))
-        results = find_peaks(request, tuple(peaks), inputs, {ONE: len(pieces.row)}, True, threads)
-        for signal, peak in peaks.items():
-            put(peak, group, _highest(group, pieces, inputs, results[signal]))
+    for whole in groups(scene, tuple(peaks), designs, at_once, at_once) if peaks else ():
+        for half, group in _by_samples(whole):
+            pieces = _pieces(group, threads)
+            request, inputs = _evaluated(group, pieces, tuple(peaks))
+            results = find_peaks_on_pieces(request, tuple(peaks), inputs, ONE, pieces.row, half, threads)
+            for signal, peak in peaks.items():
+                put(peak, group, _highest(group, pieces, inputs, results[signal]))
+
+
+def _by_samples(group: Group) -> Iterator[tuple[int, Group]]:
+    """Yield the designs of a group by the number of samples in half of each piece: few on the short pieces of loads
+    over the angle, where no near-toggle is narrow."""
+    narrow = (group.near_toggles()[1] < NARROWEST).any(axis=1) | (_loads(group.scene) is None)
+    for half, some in ((FEW, np.flatnonzero(~narrow)), (HALF, np.flatnonzero(narrow))):
+        if len(some):
+            yield half, group.some(some)
 
 
 def _highest(group: Group, pieces: Pieces, inputs: Fields, peak: Peak) -> tuple[Array, ...]:
@@ -164,7 +178,7 @@ def follow_unbounded(scene: Scene, designs: Array, peaks: dict[str, SignalPeak],
                 part = group.some(bounded)
                 pieces = _of_arcs(part, arcs.some(np.flatnonzero((known & ~upwards)[arcs.row]), bounded))
                 request, inputs = _evaluated(part, pieces, (signal,))
-                results = find_peaks(request, (signal,), inputs, {ONE: len(pieces.row)}, True, threads)
+                results = find_peaks_on_pieces(request, (signal,), inputs, ONE, pieces.row, HALF, threads)
                 put(peaks[signal], part, _highest(part, pieces, inputs, results[signal]))
     return np.sort(np.concatenate(others))
 

@@ -34,9 +34,9 @@ CHECKED = 0.1
 """Place of the sample that shows whether an input is a polynomial, from −1 to 1 in its interval."""
 ROUNDING = 1e-13
 """Difference, relative to the input's largest size, from which on an input is no polynomial."""
-LONGEST = 45.0
+LONGEST = 30.0
 """Longest interval of a table [degree]: longer ones are divided evenly."""
-MOST_KNOTS, LONGEST_PIECE = 4, 60.0
+MOST_KNOTS, LONGEST_PIECE = 4, 30.0
 """Most knots of a piece, and its greatest length [degree]: with more knots an evaluation takes more operations, with
 more pieces there are more samples."""
 ROUNDED = 1e-7
@@ -149,10 +149,12 @@ def _knots_of_functions(scene: Scene, tables: list[xr.DataArray]) -> Array | Non
 
 
 def _cuts(scene: Scene, knots: Array) -> list[int]:
-    """Return the numbers of the knots at which pieces start."""
+    """Return the numbers of the knots at which pieces start: all of pchip curves, whose curvature jumps there, so that
+    a peak beside a knot may lie between two samples."""
     corners = np.array([jump for jump in scene.jumps() if not hasattr(jump, "dims")])
     away = np.mod(knots[:, None] - corners + 0.5 * scene.mechanism.period, scene.mechanism.period)
     corner = (np.abs(away - 0.5 * scene.mechanism.period) < ROUNDED).any(axis=1)
+    corner |= any(getattr(load, "interpolation", None) == "pchip" for load in scene.loads)
     cuts = [0]
     for k in range(1, len(knots) - 1):
         if corner[k] or k - cuts[-1] == MOST_KNOTS or knots[k + 1] - knots[cuts[-1]] > LONGEST_PIECE:

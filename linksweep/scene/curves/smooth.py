@@ -20,7 +20,7 @@ TERMS = 12
 """Coefficients of the polynomial that stands for a function in an interval."""
 ROUNDING = 1e-13
 """Largest error of such a polynomial, relative to the function's largest size."""
-LONGEST = 60.0
+LONGEST = 30.0
 """Longest interval [degree]."""
 SHORTEST = 1.0
 """Intervals below this length are not halved [degree]: the function jumps or bends there."""

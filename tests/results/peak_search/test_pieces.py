@@ -8,9 +8,11 @@ import pytest
 import xarray as xr
 
 import linksweep as ls
-from linksweep.engine.peaks import laid_out, zeros
-from linksweep.engine.peaks.abreast import BLOCKS
-from linksweep.engine.peaks.search import PLACED, SAMPLES
+from linksweep.engine.peaks import laid_out, on_pieces, zeros
+from linksweep.engine.peaks.abreast import BLOCKS, EVALUATIONS
+from linksweep.engine.peaks.brackets import BEST_ROWS, PEAK, PEAK_X
+from linksweep.engine.peaks.evaluators import Functions
+from linksweep.engine.peaks.search import HALF, SAMPLES
 from linksweep.physics.closures.crank_angle import place_on_piece
 from linksweep.results.peak_search import pieces
 from linksweep.results.peak_search.groups import groups
@@ -112,7 +114,7 @@ def zeros_of(height) -> np.ndarray:
         pass
 
     def sample(constants, x, rows):
-        angles = 2.0 * np.arctan(x.reshape(2, PLACED)[:, 1:-1]) + [[0.0], [np.pi]]
+        angles = 2.0 * np.arctan(x.reshape(2, 2 * HALF + 2)[:, 1:-1]) + [[0.0], [np.pi]]
         rows[:SAMPLES] = height(angles.ravel())
 
     def evaluate(constants, table, x, value, far, signal, first, last):
@@ -123,7 +125,7 @@ def zeros_of(height) -> np.ndarray:
     with np.errstate(all="ignore"):
         zeros.find_zeros(
             0, 1, 1, 1, one + 1, np.zeros(1), one, laid_out.grades(), prepare, share, sample, evaluate,
-            np.zeros((BLOCKS, 2)), np.zeros(2 * PLACED), np.zeros(SAMPLES + 1),
+            np.zeros((BLOCKS, 2)), np.zeros(4 * HALF + 4), np.zeros(SAMPLES + 1),
             np.zeros((zeros.ZERO_ROWS, 99)), np.zeros(2), places,
         )  # fmt: skip
     angles = 2.0 * np.arctan(places[0, 0]) + np.pi * places[1, 0]
@@ -165,3 +167,40 @@ def test_what_is_unbounded_at_toggles_is_infinite_and_has_its_other_extreme_betw
         bounded += finite.sum()
     assert bounded > len(part) > 5
     assert (peaks.alpha4_peak.values[part] == np.inf).all() and (peaks.status.values[part] == 3).all()
+
+
+def test_of_pieces_with_several_summits_the_highest_is_the_peak():
+    """−cos 3φ and a little of cos φ along each piece, φ from 0 at its start to π at its end: two summits, of which that
+    at π/3 is higher by little, and the pieces of a design differ by as little."""
+    heights = np.array([0.0, 3e-7, 1e-7, 2e-7, 0.0, -1.0])
+    owners, half, little = np.array([0, 0, 0, 0, 1, 1]), HALF, 1e-6
+    results = []
+
+    def height(phi, of_piece):
+        return 5.0 + of_piece - np.cos(3.0 * phi) + little * np.cos(phi)
+
+    def prepare(front, stop, sizes, parameters, parameter_at, constants):
+        constants[:] = 1.0, 1.0, parameters[front]
+
+    def share(constants, x):
+        pass
+
+    def sample(constants, x, rows):
+        angles = 2.0 * np.arctan(x.reshape(2, -1)[:, 1:-1]) + [[0.0], [np.pi]]
+        rows[: angles.size] = height(angles.ravel(), constants[2])
+
+    def evaluate(constants, table, x, value, far, signal, first, last):
+        at = table[:, first:last]
+        at[value] = height(2.0 * np.arctan(at[x]) + np.pi * at[far], constants[2])
+
+    for bounds in ([0, 6], [0, 4, 6]):
+        functions = Functions(1, 3, 0, prepare, share, sample, evaluate)
+        pieces = laid_out.LaidOut(("height",), functions, (6,), (heights, np.zeros(1, dtype=np.int64)), half)
+        best = np.empty((BEST_ROWS + 1, 6))
+        with np.errstate(all="ignore"):
+            on_pieces.search(0, len(bounds) - 1, bounds, owners, 1, *pieces.arguments_of_pieces(6, 6), best)
+        results.append(best)
+        np.testing.assert_allclose(best[PEAK][[1, 4]], 6.0 + heights[[1, 4]] + 0.5 * little, rtol=1e-12)
+        np.testing.assert_allclose(best[PEAK_X][[1, 4]], np.tan(np.pi / 6.0), atol=1e-5)
+        assert (best[PEAK] <= 6.0 + heights + 0.5 * little + 1e-12).all() and best[EVALUATIONS, 5] == 4 * half
+    np.testing.assert_array_equal(results[0][[PEAK, EVALUATIONS]], results[1][[PEAK, EVALUATIONS]])
