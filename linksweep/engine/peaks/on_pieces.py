@@ -33,6 +33,9 @@ from linksweep.engine.peaks.search import FEW, HALF
 # may reach
 PIECE, SIGNAL, OF_DESIGN, AT, HEIGHT, NEXT = range(6)
 SUMMIT_ROWS = 6
+HIDDEN = 0.1
+"""Most that a signal may rise between a sample and its neighbours if these are as high, relative to the fall to the
+next ones. About the end of a piece signals are even, and a quartic rises by 1/48."""
 
 compare_sample_of_half, compare_sample_of_few = (comparison_of_half(half) for half in (HALF, FEW))
 
@@ -68,12 +71,14 @@ def search(
                 for lane in range(min(lanes, stop - front)):
                     piece, k = front + lane, signal * lanes + lane
                     of_design, tag = (owners[piece] - owners[start]) * signals + signal, signal * width + piece
-                    value = rows[block, int(state[SUMMIT, k]) * columns + k]
+                    value, height = rows[block, int(state[SUMMIT, k]) * columns + k], math.inf
+                    if state[REACH, k] > -math.inf:  # else nothing is known
+                        height = max(state[REACH, k], hidden_height(rows[block], int(state[SUMMIT, k]), columns, k))
                     if value > highest[of_design]:
                         highest[of_design] = value
                     summits[PIECE, count], summits[SIGNAL, count] = piece, signal
                     summits[OF_DESIGN, count], summits[AT, count] = of_design, state[SUMMIT, k]
-                    summits[HEIGHT, count], summits[NEXT, count] = state[REACH, k], state[OTHER, k]
+                    summits[HEIGHT, count], summits[NEXT, count] = height, state[OTHER, k]
                     best[PEAK, tag], best[BEYOND, tag], best[EVALUATIONS, tag] = value, 0.0, 4 * half
                     count += 1
         count = drop_lower(summits, count, highest)
@@ -83,12 +88,19 @@ def search(
         )  # fmt: skip
 
 
+def hidden_height(rows, at, columns, k):
+    """Return the height that a signal may reach between a sample and neighbours as high: by the fall beyond them."""
+    value = rows[at * columns + k]
+    fall = max(0.0, max(value - rows[(at - 2) * columns + k], value - rows[(at + 2) * columns + k]))
+    return value + HIDDEN * fall
+
+
 def drop_lower(summits, count, highest):
     """Keep the summits that may exceed all samples of their design, and pieces without any; return how many."""
     kept = 0
     for k in range(count):
         height = summits[HEIGHT, k]
-        if not height < highest[int(summits[OF_DESIGN, k])] or height == -math.inf:
+        if not height < highest[int(summits[OF_DESIGN, k])]:
             for row in range(SUMMIT_ROWS):
                 summits[row, kept] = summits[row, k]
             kept += 1
