@@ -25,7 +25,7 @@ CALLS = {
     "nine unknowns of many designs": (partial(ls.sweep, designs, 72, of=NINE, threads=1), 2, 2),
     "default quantities": (partial(ls.sweep, general, 72), 2 + 2 * len(PINS), 2 + len(PINS)),
     "default quantities of many designs": (partial(ls.sweep, designs, 72, threads=1), 2 + 2 * len(PINS), 2 + len(PINS)),
-    "six-bar": (partial(ls.sweep, six_bar, 72, of=six_bar.mechanism.unknowns("crank")), 4, 4),
+    "six-bar": (partial(ls.sweep, six_bar, 72, of=six_bar.mechanism.unknowns("crank")), 2, 2),
     "T12 alone": (partial(ls.sweep, general, 72, of=("T12",)), 2, 2),
     "magnitudes": (partial(ls.sweep, general, 72, of=PINS), 2 + 2 * len(PINS), 2 + len(PINS)),
     "peaks": (partial(ls.peaks, designs, theta2=72, threads=1), 2, 2),
@@ -33,7 +33,7 @@ CALLS = {
 }
 """Calls, and how many registers of square roots their kernels take on AVX2 and on AVX-512: that of the closure twice
 and those of magnitudes twice, as two registers are side by side; or, where the closure's is taken one vector ahead,
-once before the loop and once in it, those of magnitudes are in one register."""
+once before the loop and once in it, those of magnitudes are in one register, as all are of a loop in stages."""
 
 
 def width() -> str:

@@ -15,7 +15,7 @@ SLOW = {"/", "sqrt"}
 """Operations that take several times as long as others."""
 GAIN = range(50, 301)
 """Numbers of operations of loops with slow ones that gain by it: most took 0.77 to 1.01 of the time, shorter ones up to
-1.14, and longer ones, whose values do not fit into the registers, 0.96 to 1.05 (AMD Zen 4)."""
+1.14 (AMD Zen 4). Longer ones, whose values do not fit into the registers, go through `engine.kernel.pipeline`."""
 
 
 def done_ahead(work: Sequence[Node]) -> list[Node]:

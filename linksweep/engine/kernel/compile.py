@@ -12,7 +12,7 @@ import contextlib
 import hashlib
 import pickle
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from functools import cache, partial
 from types import ModuleType
 from typing import Any
@@ -46,8 +46,24 @@ def compiled(kernel_source: str, streamed: str = "", kinds: tuple[str, ...] = KI
     signature = normalize_signature(f"void({', '.join(TYPES[kind] for kind in kinds)})")
     callback: Any = CFunc(module.kernel, signature, {}, SETTINGS)
     callback._cache = KernelCache(f"{module.__name__}.kernel")
-    callback.compile()
+    with _in_written_order() if "in_stages(" in kernel_source else contextlib.nullcontext():
+        callback.compile()
     return MachineCode(callback, callback.address, kinds)
+
+
+@contextlib.contextmanager
+def _in_written_order() -> Iterator[None]:
+    """Let LLVM leave instructions in the order in which they are written: this setting holds for the whole process,
+    so no other thread may compile meanwhile."""
+    from llvmlite import binding
+    from numba.core.compiler_lock import global_compiler_lock
+
+    with global_compiler_lock:
+        binding.set_option("", "-enable-misched=false")
+        try:
+            yield
+        finally:
+            binding.set_option("", "-enable-misched=true")
 
 
 def _module(text: str, helpers: Mapping[str, Callable], context: str) -> Any:

@@ -24,6 +24,16 @@ Some of the operations may be done one vector ahead of the others, which then wa
     for j, x7 in in_vectors_ahead(0, samples, samples, start):
         block[2, j] = x7
 
+Or a pass does the last operations of one vector between earlier ones of others, and keeps what a later pass reads:
+
+    kept = places(1)
+    for j0, j1 in in_stages(0, samples, samples, 2):
+        x7_1 = kept[0]
+        block[2, j1] = x7_1
+        cos2 = profiles[0, j0]
+        x7 = cos2 * x5
+        kept[0] = x7
+
 Designs stand side by side in the same way, with their samples one after the other, and running summaries of these:
 
     for i0 in in_vectors(first, last, sizes[0]):
@@ -146,6 +156,21 @@ class _Array:
         return pointer, last if in_loop else None
 
 
+class _Places:
+    """Places of vectors in memory, zero at first: what one pass of a loop writes, the next one reads."""
+
+    def __init__(self, writer: _Writer, count: int) -> None:
+        self.writer, vector = writer, writer.instructions.vector
+        self.places = [writer.instructions.slot(vector(None)) for _ in range(count)]
+
+    def __getitem__(self, k: int) -> _Value:
+        return _Value(self.writer, self.writer.builder.load(self.places[k]))
+
+    def __setitem__(self, k: int, value: _Value) -> None:
+        write = self.writer.instructions
+        self.writer.builder.store(write.wide(write.as_number(value.llvm)), self.places[k])
+
+
 class _Writer:
     """Writer of one function's instructions."""
 
@@ -160,6 +185,7 @@ class _Writer:
         """Return the functions that a function's source may use."""
         operations = {name: partial(self.operation, name) for name in self.instructions.operators}
         loops = {"in_vectors": self.in_vectors, "in_vectors_ahead": self.in_vectors_ahead, "each": self.each}
+        loops |= {"in_stages": self.in_stages, "places": self.places}
         summaries = {kind: partial(self.summary, function) for kind, function in SUMMARIES.items()}
         return {"math": math, "number": self.number, "running": self.running} | loops | operations | summaries
 
@@ -195,6 +221,26 @@ class _Writer:
         )
         for j, started in self._inside(loop):
             yield place(j), *(_Value(self, x) for x in started)
+
+    def places(self, count: int) -> _Places:
+        """Return places for what passes of a loop in stages keep: single registers, as there are many."""
+        self.instructions = Instructions(self.builder, width() // 2)
+        return _Places(self, count)
+
+    def in_stages(
+        self, first: _Value | int, last: _Value | int, samples: _Value | int, stages: int
+    ) -> Iterator[list[_Value]]:
+        """Write a loop over the samples that has a vector in each of its stages; it yields the first sample of each,
+        the newest vector's first.
+
+        The first passes end vectors that were never begun. What they store, in the place of the first vector, is
+        overwritten by that.
+        """
+        place, step, first = self._place_of_vector(samples), self.instructions.width, self.integer(first)
+        ahead = [self.integer(step * k) for k in reversed(range(stages))]
+        loop = self.instructions.loop(self.builder.sub(first, ahead[0]), self.integer(last), step)
+        for j, _ in self._inside(loop):
+            yield [place(self._larger(self.builder.add(j, more), first)) for more in ahead]
 
     def _place_of_vector(self, samples: _Value | int) -> Callable[[Any], _Value]:
         """Return a function of a loop's counter: where its vector begins, which must end with the row."""

@@ -19,11 +19,12 @@ instructions `engine.kernel.vectors` writes: of each level, one for its single v
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
 from linksweep.engine.kernel.ahead import done_ahead
+from linksweep.engine.kernel.pipeline import pipeline
 from linksweep.engine.trace.graph import Node
 from linksweep.engine.trace.plan import Plan
 
@@ -63,6 +64,10 @@ class Writer:
         self.kernel: list[str] = []
         self.functions: list[str] = []
         self.known: set[str] = set()
+        self.stages: Mapping[Node, int] = {}
+        """Stages of the operations of a loop in stages, while it is written."""
+        self.stage = 0
+        """The stage of which an operation is written."""
 
     def per_sample(self, node: Node) -> bool:
         return self.plan.index in node.dims
@@ -190,7 +195,7 @@ class Writer:
         return self.name(node)
 
     def _sample_loop(self, level: int) -> None:
-        """Write the loop over the samples: it may `start` each vector while it ends the one before."""
+        """Write the loop over the samples: in stages, or it may `start` each vector while it ends the one before."""
         written = [node for node in {**dict.fromkeys(self.rows), **self.scratch} if self.level(node) == level]
         if not written:
             return
@@ -198,6 +203,9 @@ class Writer:
         self._function("rows", level)
         self._read_singles({*written, *operands(work)} - set(work))
         bounds = "0, samples" if self.plan.loops else "first, last"
+        if stages := pipeline(work):
+            self._in_stages(bounds, stages, {*written})
+            return
         if ahead := done_ahead(work):
             work = [node for node in work if node not in set(ahead)]
             kept = _in_order({*operands(work), *written} & set(ahead))
@@ -210,6 +218,26 @@ class Writer:
         else:
             self._line(1, f"for j in in_vectors({bounds}, samples):")
         self._operations(2, work, written)
+
+    def _in_stages(self, bounds: str, stages: Mapping[Node, int], written: set[Node]) -> None:
+        """Write a loop whose operations are done in this order, each in its stage of another vector."""
+        last_read = dict(stages)
+        for node in stages:
+            last_read |= {x: max(last_read[x], stages[node]) for x in node.operands if x in stages}
+        kept = [(x, later) for x, last in last_read.items() for later in range(stages[x] + 1, last + 1)]
+        counters = [f"j{k}" for k in range(1 + max(stages.values()))]
+        self.stages = stages
+        self._line(1, f"kept = places({len(kept)})")
+        self._line(1, f"for {', '.join(counters)}, in in_stages({bounds}, samples, {len(counters)}):")
+        for k, (x, self.stage) in enumerate(kept):
+            self._define(2, x, f"kept[{k}]")
+        for node, self.stage in stages.items():
+            self._operations(2, [node], {node} & written)
+        self._operations(2, [], written - stages.keys())
+        for k, (x, later) in enumerate(kept):
+            self.stage = later - 1
+            self._line(2, f"kept[{k}] = {self.name(x)}")
+        self.stages, self.stage = {}, 0
 
     def _operations(self, depth: int, work: list[Node], written: Iterable[Node] = ()) -> None:
         """Write operations on samples, what they read, and where it is to be stored."""
@@ -230,8 +258,14 @@ class Writer:
                 waiting.extend(node.operands)
         return _in_order(needed)
 
-    def _sample(self, node: Node, number: str = "j") -> str:
+    @property
+    def number(self) -> str:
+        """The name of the number of a loop's sample, or of the first one in a vector."""
+        return f"j{self.stage}" if self.stages else "j"
+
+    def _sample(self, node: Node, number: str = "") -> str:
         """Return the place from which a sample is read."""
+        number = number or self.number
         if node in self.scratch:
             return f"scratch[{self.scratch[node]}, {number}]"
         return f"profiles[{self._at('profile', self.profiles.index(node), node)}, {number}]"
@@ -239,9 +273,9 @@ class Writer:
     def _cells(self, node: Node) -> Iterator[str]:
         """Yield the places where a sample is stored."""
         if node in self.scratch:
-            yield f"scratch[{self.scratch[node]}, j]"
+            yield f"scratch[{self.scratch[node]}, {self.number}]"
         if node in self.rows:
-            yield f"block[{self._at('block', self.rows.index(node), node)}, j]"
+            yield f"block[{self._at('block', self.rows.index(node), node)}, {self.number}]"
 
     def _row(self, node: Node) -> str:
         """Return a node's row of scratch."""
@@ -258,7 +292,9 @@ class Writer:
     def name(self, node: Node) -> str:
         if node.operator == "constant":
             return repr(node.value) if math.isfinite(node.value) else f"math.{node.value}"
-        return node.value if node.operator == "input" else f"x{node.position}"
+        passes = self.stage - self.stages.get(node, 0) if self.stages and self.per_sample(node) else 0
+        age = f"_{passes}" if passes else ""
+        return f"{node.value if node.operator == 'input' else f'x{node.position}'}{age}"
 
     def _expression(self, node: Node) -> str:
         """Return an operation as Python source."""
