@@ -16,8 +16,9 @@ from linksweep.engine.kernel.translate import translated
 from linksweep.engine.linear import elimination, lanes
 from linksweep.engine.patience import Patience
 
-AT_ONCE = 4096
-"""Samples of one call: their numbers stay in cache."""
+AT_ONCE = 4040
+"""Samples of one call: their numbers stay in cache. Rows are an odd number of its lines long and so begin in different
+sets: rows of 4096 samples competed for one."""
 BLOCKS = "f8[:, :, :]"
 KINDS = (BLOCKS, "i8[:, :]", ROW, INTEGERS, BLOCKS, BLOCKS, BLOCKS)
 """Arguments of the functions of `elimination`."""
