@@ -68,15 +68,19 @@ def steady_table(cycle: xr.Dataset) -> Table:
     return Table(("on its motor", "", ""), rows, right=(1,))
 
 
+WHEEL = {  # title by variable, and the variable beside which less than 1e-12 is rounding
+    "flywheel_inertia": ("its inertia", "flywheel_inertia"),
+    "fluctuation": ("fluctuation", "fluctuation"),
+    "speed_min": ("least speed", "speed_max"),
+    "speed_max": ("largest speed", "speed_max"),
+    "drive_torque": ("constant torque", "energy_fluctuation"),
+}
+
+
 def wheel_table(wheel: xr.Dataset) -> Table:
     """Return the table of a flywheel for constant torque."""
-    speed = wheel["speed"]
-    numbers = {
-        "its inertia": wheel["flywheel_inertia"],
-        "fluctuation": wheel["fluctuation"],
-        "least speed": speed.min().assign_attrs(speed.attrs),
-        "largest speed": speed.max().assign_attrs(speed.attrs),
-        "constant torque": wheel["drive_torque"],
-    }
-    rows = [(title, f"{float(each):.5g}", unit_of(each).removesuffix("1")) for title, each in numbers.items()]
+    rows: list[Row] = []
+    for name, (title, beside) in WHEEL.items():
+        number = without_rounding(float(wheel[name]), abs(float(wheel[beside])))
+        rows.append((title, number, unit_of(wheel[name]).removesuffix("1")))
     return Table(("with a flywheel", "", ""), rows, right=(1,))

@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.tables.cells import digits, unit_of, with_unit
+from linksweep.tables.of_balance import ROUNDING
 from linksweep.tables.table import Part, Row, Table
 
 NUMBERS = {
@@ -54,5 +55,8 @@ def _row(title: str, value: xr.DataArray) -> Row:
 
 def _peak(ds: xr.Dataset, name: str) -> Row:
     """Return the row of a peak, with its time and its crank angle."""
+    number = float(ds[name])
+    if name.startswith("T") and abs(number) < ROUNDING * float(ds["kinetic_energy"]):
+        return name, "0", unit_of(ds[name]), "", ""  # the torque of a shaft that carries nothing
     time, angle = (with_unit(float(ds[f"{name}_{end}"]), unit_of(ds[f"{name}_{end}"])) for end in ("time", "at"))
-    return name, digits(float(ds[name])), unit_of(ds[name]), time, angle
+    return name, digits(number), unit_of(ds[name]), time, angle

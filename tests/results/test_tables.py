@@ -162,3 +162,18 @@ def test_a_scene_states_its_own_units(tmp_path, monkeypatch, capsys):
     np.testing.assert_array_equal(results[0].F32_peak, ls.peaks(PRESS).F32_peak)  # in SI, to the bit
     ls.save(results[0], tmp_path / "peaks.nc")
     assert ls.load_scene(tmp_path / "peaks.nc") == scene
+
+
+def test_every_machine_is_checked_in_the_same_words():
+    """The arcs of one design are one line, on every machine the four-bar's."""
+    for name in ("press", "engine", "quick-return", "knuckle-press"):
+        titles = {title.removesuffix(":"): text for title, text in cells(str(ls.check(ls.example(name)).linksweep))}
+        assert titles["can be assembled"] == "everywhere"
+        assert titles["at theta2 from"] == "0.0000° to 360.0000°"
+        assert titles["toggles at theta2"] == "none"
+
+
+def test_a_torque_that_is_only_rounding_prints_as_zero():
+    """A press whose loads do no work needs no mean torque; a crank without flywheel and motor carries none."""
+    assert ["constant torque", "0", "N m"] in cells(str(ls.flywheel(PRESS, fluctuation=0.05).linksweep))
+    assert ["T12_peak", "0", "N m"] in cells(str(ls.run_down(PRESS, of=["T12"]).linksweep))
