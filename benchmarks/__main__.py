@@ -93,7 +93,7 @@ def _disagree(groups: Groups) -> bool:
 
 
 def _results(groups: Groups, size: Size) -> str:
-    title = "# Results\n\nWritten by `python -m benchmarks --write`; README.md says what each row means."
+    title = "# Results\n\nWritten by `python -m benchmarks --write`; [README](README.md) says what each row means."
     facts = "\n".join(f"- {name}: {value}" for name, value in machine().items())
     return f"{title}\n\n{facts}\n\n{markdown(groups)}\n\n{_footer(size)}\n"
 

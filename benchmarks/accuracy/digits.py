@@ -200,7 +200,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     print(page)
     if options.write:
         command = f"python -m benchmarks.accuracy.digits --designs {options.designs} --seed {options.seed} --write"
-        head = f"# Accuracy\n\nWritten by `{command}`; README.md explains it."
+        head = f"# Accuracy\n\nWritten by `{command}`; [README](README.md) explains it."
         RESULTS.write_text(f"{head}\n\n{page}\n")
     return 0
 

@@ -76,7 +76,7 @@ def _in_turn(families: dict[str, Family], each: int, size: int, seed: int) -> It
 def _head(options: argparse.Namespace) -> str:
     limit = f" --minutes {options.minutes:g}" if np.isfinite(options.minutes) else ""
     command = f"python -m benchmarks.stress --mechanisms {options.mechanisms} --seed {options.seed}{limit} --write"
-    return f"# Stress\n\nWritten by `{command}`; README.md explains the columns."
+    return f"# Stress\n\nWritten by `{command}`; [README](README.md) explains the columns."
 
 
 def _parser() -> argparse.ArgumentParser:

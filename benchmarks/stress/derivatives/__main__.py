@@ -51,7 +51,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     print(page)
     if options.write:
         command = f"python -m benchmarks.stress.derivatives --scenes {options.scenes} --seed {options.seed} --write"
-        RESULTS.write_text(f"# Derivatives\n\nWritten by `{command}`; README.md explains the columns.\n\n{page}\n")
+        head = f"# Derivatives\n\nWritten by `{command}`; [README](README.md) explains the columns."
+        RESULTS.write_text(f"{head}\n\n{page}\n")
     return int(bool(problems))
 
 

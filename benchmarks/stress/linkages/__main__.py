@@ -57,7 +57,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     print(page)
     if options.write:
         command = f"python -m benchmarks.stress.linkages --designs {options.designs} --seed {options.seed} --write"
-        RESULTS.write_text(f"# Linkages\n\nWritten by `{command}`; README.md explains the columns.\n\n{page}\n")
+        head = f"# Linkages\n\nWritten by `{command}`; [README](README.md) explains the columns."
+        RESULTS.write_text(f"{head}\n\n{page}\n")
     return int(bool(problems))
 
 
