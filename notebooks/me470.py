@@ -101,7 +101,7 @@ for sign, name in ((-1, "−"), (1, "+")):
         apart = np.exp(1j * np.array([theta3, theta4])) - np.exp(1j * np.radians([ours.theta3, ours.theta4]))
         print(f"{name} and {branch:8}: up to {abs(apart).max():.1e} apart")
 
-page.sel(theta2=[0, 45, 90])[["K1", "K2", "K3", "K4", "K5", *"ABCDEF"]].to_dataframe()
+page.sel(theta2=[0, 45, 90])[["K1", "K2", "K3", "K4", "K5", *"ABCDEF"]].to_dataframe().round(4)
 
 # %% [markdown]
 # So − is open and + is crossed. Ours is the open one. Its transmission angle: the sheet's μ = θ4 − θ3 passes 90°, and what

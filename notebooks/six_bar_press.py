@@ -122,7 +122,7 @@ table = pd.DataFrame(
 table["in the crank press [kN]"] = pd.Series(
     {force: float(of_the_plain[f"{force}_peak"]) / 1e3 for force in ("F12", "F32")}
 )
-table.round(1).astype(str).replace("nan", "–")
+table.round(1).astype(object).fillna("–")
 
 # %% [markdown]
 # The levers' pins bear the 600 kN, and the crank less than a twentieth of it. In the crank press, crank pin and main bearing bear all.
@@ -150,7 +150,7 @@ pd.DataFrame(
         "L10h [h]": loads.L10h,
     },
     index=loads.pin,
-).round(1).astype(str).replace("nan", "–")
+).round(1).astype(object).fillna("–")
 # %% [markdown]
 # The bushes are worst at the bottom, where they hardly turn: 54 MPa is at home in a bronze bush at that speed. The crank's small roller
 # bearings live for more than 40 000 h. Friction in the bushes is
