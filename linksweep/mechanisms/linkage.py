@@ -239,6 +239,10 @@ class Linkage(Machine):
         return tuple((role, ratio) for role, ratio in self.topology.gears.items() if ratio.denominator > 1)
 
     @property
+    def fastest(self) -> float:
+        return max(1.0, *(abs(float(ratio)) for ratio in self.topology.gears.values()), 0.0)
+
+    @property
     def places(self) -> tuple[str, ...]:  # type: ignore[override]
         return tuple(step.name for step in self.topology.steps)
 

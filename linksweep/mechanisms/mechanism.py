@@ -118,6 +118,11 @@ class Mechanism(ByContent, ABC):
         refuse(field_problems(self))
         refuse(self.closure_problems())
 
+    @property
+    def fastest(self) -> float:
+        """Most turns that gears give a link per turn of the crank; 1 without gears."""
+        return 1.0
+
     @abstractmethod
     def parameters(self) -> dict[str, Any]:
         """Return the numbers of the machine under the names that the physics takes; a Field where it adds a dim."""

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
 import numpy as np
 
-from linksweep.engine.run import evaluate
-from linksweep.engine.trace.plan import plan
+from linksweep.engine.quantity import Table
+from linksweep.engine.run import Field, Fields, evaluate
+from linksweep.engine.trace.plan import InputForms, Plan, plan
 from linksweep.scene.dimensions import aligned
 from linksweep.scene.pairs import Array, inputs_along, places_of, quantities_at
 from linksweep.scene.scene import Scene
@@ -14,6 +18,39 @@ EVERYWHERE, PARTLY, NEVER = 0.0, 1.0, 2.0
 """Assembly of a design: at every crank angle, at some, or at none."""
 CHOSEN = "_chosen"
 """Dim of designs that are computed at the same angles."""
+
+ONE = "_one"
+"""Dim of designs, or of pieces of their turns, each with its own value of every parameter."""
+
+
+def one_by_one(
+    scene: Scene,
+    designs: Array,
+    table: Table,
+    names: tuple[str, ...],
+    own: Mapping[str, Array],
+    places: InputForms,
+) -> tuple[Plan, Fields]:
+    """Return the plan of quantities of a table between samples, and its inputs along the dim `ONE`: a value for each of
+    these designs, and `own` ones besides; `places` are the forms of the search's own inputs. Those that change over the
+    angle are left to the table."""
+    inputs, index = scene.at_one_angle.inputs, scene.mechanism.index
+    forms = tuple(
+        (name, (ONE,) if isinstance(form, tuple) and form else form)
+        for name, form in inputs.forms
+        if not (isinstance(form, tuple) and index in form)
+    )
+    request = plan(table, names, (*forms, *((name, (ONE,)) for name in own), *places))
+    fields = inputs_along(ONE, request, inputs, places_of(inputs.sizes, designs))
+    return request, fields | {name: Field((ONE,), values) for name, values in own.items()}
+
+
+def number_of(scene: Scene, number: Any, designs: Array) -> Array:
+    """Return a parameter of a scene, or a number computed from parameters, for each of these designs."""
+    if not hasattr(number, "dims"):
+        return np.full(len(designs), float(number))
+    places = places_of(scene.at_one_angle.inputs.sizes, designs)
+    return number.values[tuple(places[str(dim)] for dim in number.dims)] + np.zeros(len(designs))
 
 
 def positions_at(scene: Scene, names: tuple[str, ...], designs: Array, angles: Array) -> Array:

@@ -38,8 +38,8 @@ from linksweep.results.peak_search.along_paths import (
 )
 from linksweep.results.peak_search.approaches import with_narrow_approaches
 from linksweep.results.peak_search.arcs import about_approaches_on_arcs, arc_ends, arcs, arcs_within
-from linksweep.results.peak_search.between import EVERYWHERE, PARTLY
-from linksweep.results.peak_search.groups import ONE, assembled_groups, different, empty, groups
+from linksweep.results.peak_search.between import EVERYWHERE, ONE, PARTLY
+from linksweep.results.peak_search.groups import assembled_groups, different, empty, groups
 from linksweep.results.peak_search.paths import ASIDE, Part, about_approaches, about_breaks, turns
 from linksweep.results.peak_search.pieces import (
     AT_ONCE,

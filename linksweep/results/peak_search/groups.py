@@ -14,7 +14,7 @@ from linksweep.engine.peaks.evaluators import FAR_WIDTH, NEAR_WIDTH
 from linksweep.engine.quantity import Table
 from linksweep.engine.run import Field, Fields, evaluate
 from linksweep.engine.trace.plan import InputForms, Plan, plan
-from linksweep.results.peak_search.between import EVERYWHERE, PARTLY
+from linksweep.results.peak_search.between import EVERYWHERE, ONE, PARTLY, number_of, one_by_one
 from linksweep.results.peak_search.limits import Limits, limits_of, signals_of
 from linksweep.scene.pairs import Array, Places, different_designs, inputs_along, places_of, quantities_at
 from linksweep.scene.parameters import replaced
@@ -25,8 +25,6 @@ AT_ONCE = 256
 OWN_AT_ONCE = 16
 """Designs searched together where loads over the angle have design dims: each load is sampled at all designs' angles,
 so the memory grows with the square of this number."""
-ONE = "_one"
-"""Dim of designs, or of pieces of their turns, each with its own value of every parameter."""
 COMBINED = "_combined"
 """Dim that combines the design dims of loads over the angle."""
 
@@ -75,7 +73,8 @@ class Group(NamedTuple):
         """Return the angles of near-toggles (design, nth) from the mechanism's `near_toggle_angle` [degree], and their
         half-widths as tangents of half the angle; NaN where other designs have more."""
         if self.limits is not None:
-            return self.limits.near_toggle, self.limits.near_toggle_width
+            middle = self.number(self.scene.mechanism.near_toggle_angle)
+            return self.limits.near_toggle - middle[:, None], self.limits.near_toggle_width
         widths = self.constants(NEAR_WIDTH, FAR_WIDTH).T
         return np.broadcast_to([0.0, 180.0], widths.shape), widths
 
@@ -88,26 +87,12 @@ class Group(NamedTuple):
     def one_by_one(
         self, table: Table, names: tuple[str, ...], rows: Array, own: Mapping[str, Array], places: InputForms
     ) -> tuple[Plan, Fields]:
-        """Return the plan of quantities of a table between samples, and its inputs along the dim `ONE`: a value for
-        each of these rows of the group, and `own` ones besides; `places` are the forms of the search's own inputs.
-        Those that change over the angle are left to the table."""
-        inputs, index = self.scene.at_one_angle.inputs, self.scene.mechanism.index
-        forms = tuple(
-            (name, (ONE,) if isinstance(form, tuple) and form else form)
-            for name, form in inputs.forms
-            if not (isinstance(form, tuple) and index in form)
-        )
-        request = plan(table, names, (*forms, *((name, (ONE,)) for name in own), *places))
-        at = places_of(inputs.sizes, self.designs[rows])
-        fields = inputs_along(ONE, request, inputs, at)
-        return request, fields | {name: Field((ONE,), values) for name, values in own.items()}
+        """Return `one_by_one` of the designs in these rows of the group."""
+        return one_by_one(self.scene, self.designs[rows], table, names, own, places)
 
     def number(self, number: Any) -> Array:
         """Return a parameter of the scene, or a number computed from parameters, for each of these designs."""
-        if not hasattr(number, "dims"):
-            return np.full(len(self.designs), float(number))
-        places = places_of(self.scene.at_one_angle.inputs.sizes, self.designs)
-        return number.values[tuple(places[str(dim)] for dim in number.dims)] + np.zeros(len(self.designs))
+        return number_of(self.scene, number, self.designs)
 
 
 def all_at_once(scene: Scene, designs: Array) -> Group:

@@ -12,8 +12,9 @@ import numpy as np
 
 from linksweep.engine.quantity import LAST_UNJAMMED
 from linksweep.engine.run import Field
-from linksweep.results.peak_search.groups import Group, empty_over_all, groups
-from linksweep.results.peak_search.paths import ASIDE, in_order, jump_angles
+from linksweep.results.peak_search.between import EVERYWHERE
+from linksweep.results.peak_search.groups import Group, all_at_once, different, empty_over_all, groups
+from linksweep.results.peak_search.paths import ASIDE, OFF_ROUND, in_order, jump_angles
 from linksweep.scene.pairs import Array, by_row
 from linksweep.scene.scene import Scene
 
@@ -50,12 +51,25 @@ def may_jam(scene: Scene) -> bool:
 
 def jammed_designs(scene: Scene) -> Field:
     """Return whether each design is jammed at any angle."""
-    jammed = empty_over_all(scene, STATUS)
-    for group in groups(scene, STATUS):
+    jammed, every = empty_over_all(scene, STATUS), all_at_once(scene, different(scene, STATUS))
+    same = _never_changes(every)
+    known = every.some(np.flatnonzero(same))
+    row = np.arange(len(known.designs))
+    of_groups = [(known, _jammed_place(known, row, np.full(len(row), OFF_ROUND)) != FREE)]
+    for group in groups(scene, STATUS, every.designs[~same]):
         pieces = _pieces(group)
-        of_group = np.bincount(pieces.row, pieces.place != FREE, len(group.designs)) > 0
-        jammed.values[tuple(group.places[dim] for dim in jammed.dims)] = of_group if jammed.dims else of_group[0]
+        of_groups.append((group, np.bincount(pieces.row, pieces.place != FREE, len(group.designs)) > 0))
+    for group, values in of_groups:
+        jammed.values[tuple(group.places[dim] for dim in jammed.dims)] = values if jammed.dims else values.any()
     return Field(jammed.dims, jammed.values > 0.0)
+
+
+def _never_changes(group: Group) -> Array:
+    """Return whether each design is jammed at all angles or at none: jams begin where friction wedges, or where one of
+    two contacts bears nothing."""
+    begins = np.concatenate([group.zeros("wedge"), group.zeros("dead_centre")], axis=1)
+    known = (group.assembly() == EVERYWHERE) & ~np.isfinite(begins).any(axis=1)
+    return known & (not group.scene.table.contacts)
 
 
 def jam_tables(scene: Scene) -> tuple[tuple[str, ...], Array, Array, Array]:

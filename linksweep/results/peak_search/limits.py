@@ -25,6 +25,7 @@ from linksweep.engine.run import Field
 from linksweep.engine.trace.plan import plan
 from linksweep.results.compute import compute, zeros_of
 from linksweep.results.peak_search.between import EVERYWHERE, NEVER, PARTLY
+from linksweep.results.peak_search.clear import clear_designs
 from linksweep.results.peak_search.curves import SEAM, WIDE, Curves, Extremes, parabola, zeros_and_extremes
 from linksweep.scene.pairs import Array, by_row, different_designs, in_period
 from linksweep.scene.scene import Scene
@@ -67,6 +68,9 @@ class NearToggles(NamedTuple):
     row: Array
     angle: Array
     width: Array
+
+
+NOWHERE = NearToggles(np.empty(0, dtype=int), np.empty(0), np.empty(0))
 
 
 class Zeros(NamedTuple):
@@ -132,8 +136,12 @@ def signals_of(limits: tuple[Limit, ...]) -> tuple[str, ...]:
 
 def find_limits(scene: Scene, limits: tuple[Limit, ...], designs: Array) -> Limits:
     """Search the limits of these designs of a mechanism alone, whose period is that of its motion."""
+    clear, jumps = clear_designs(scene, limits, designs)
+    zero, none = np.zeros(len(clear)), np.full(len(clear), NO_TOGGLE)
+    some = [(Arcs(clear, zero, zero + scene.period, none, none), NOWHERE, Zeros(*jumps))]
+    others = np.setdiff1d(np.arange(len(designs)), clear, assume_unique=True)
     step = max(1, AT_ONCE // round(scene.period / scene.mechanism.period))
-    some = [_search(scene, limits, designs[k : k + step], k) for k in range(0, len(designs), step)]
+    some += [_search(scene, limits, designs, others[k : k + step]) for k in range(0, len(others), step)]
     arcs, near, zeros = zip(*some, strict=True)
     tables = _joined(Arcs, arcs), _joined(NearToggles, near), _joined(Zeros, zeros)
     return _tables(*tables, len(designs), len(limits), scene.period)
@@ -164,12 +172,12 @@ def _tables(arcs: Arcs, near: NearToggles, zeros: Zeros, designs: int, parts: in
 # ------------------------------------------------------------------------------------- one part after the other
 
 
-def _search(scene: Scene, limits: tuple[Limit, ...], designs: Array, first: int) -> tuple[Arcs, NearToggles, Zeros]:
-    """Return the arcs, near-toggles and zeros of some designs, whose rows count from `first`."""
-    count = len(designs)
+def _search(scene: Scene, limits: tuple[Limit, ...], every: Array, rows: Array) -> tuple[Arcs, NearToggles, Zeros]:
+    """Return the arcs, near-toggles and zeros of the designs in these rows."""
+    designs, count = every[rows], len(rows)
     none, zero = np.full(count, NO_TOGGLE), np.zeros(count)
     arcs = Arcs(np.arange(count), zero, zero + scene.period, none, none)
-    near = NearToggles(*(np.empty(0, dtype=kind) for kind in (int, float, float)))
+    near = NOWHERE
     zeros = [Zeros(*(np.empty(0, dtype=kind) for kind in (int, float, int)))]
     for part, limit in enumerate(limits):
         pieces, known = [arcs.some(np.empty(0, dtype=int))], [near]
@@ -186,9 +194,9 @@ def _search(scene: Scene, limits: tuple[Limit, ...], designs: Array, first: int)
     zeros += [Zeros(arcs.row, arcs.start, arcs.start_part), Zeros(arcs.row, arcs.end, arcs.end_part)]
     all_zeros = _joined(Zeros, zeros)
     return (
-        arcs._replace(row=arcs.row + first),
-        near._replace(row=near.row + first),
-        all_zeros._replace(row=all_zeros.row + first),
+        arcs._replace(row=rows[arcs.row]),
+        near._replace(row=rows[near.row]),
+        all_zeros._replace(row=rows[all_zeros.row]),
     )
 
 

@@ -25,8 +25,9 @@ from linksweep.physics.algebra import planar
 from linksweep.physics.closures import crank_angle
 from linksweep.results.peak_search.along_paths import SignalPeak, angle_in_period, put
 from linksweep.results.peak_search.arcs import NEAREST, arc_ends
-from linksweep.results.peak_search.between import EVERYWHERE
-from linksweep.results.peak_search.groups import ONE, Group, all_at_once, groups
+from linksweep.results.peak_search.between import EVERYWHERE, ONE
+from linksweep.results.peak_search.clear import ENDS, FASTEST, HALF_TURN
+from linksweep.results.peak_search.groups import Group, all_at_once, groups
 from linksweep.results.peak_search.paths import distinct
 from linksweep.results.peak_search.poles import singular_angles
 from linksweep.scene.curves.polynomials import Polynomials, polynomials
@@ -35,9 +36,8 @@ from linksweep.scene.scene import Scene
 
 AT_ONCE = 8192
 """Designs whose pieces are searched together."""
-ENDS, HALF_TURN, WIDTHS = ("piece_from", "piece_to"), "far_half", ("width_at_start", "width_at_end")
-"""Inputs of a piece: its ends as tangents of half the angle from the middle of a half turn; that half turn; widths of
-the near-toggle as seen from its ends."""
+WIDTHS = "width_at_start", "width_at_end"
+"""Inputs of a piece besides its ends: the widths of near-toggles as seen from them."""
 MIDDLE, ANGLE = "piece_middle", "angle_on_piece"
 """Input of a piece with loads over the angle, its middle as such a tangent; and the angle from there [rad]."""
 LOADED_AT_ONCE = 2048
@@ -104,7 +104,7 @@ def known_on_pieces(scene: Scene) -> bool:
     machine = scene.mechanism
     divided = bool(machine.directions()) or not machine.jumps()
     simple = not (scene.table.contacts or scene.approaches()) and scene.period_of_motion == machine.period
-    return divided and simple and (scene.steady or _loads(scene) is not None)
+    return divided and simple and machine.fastest <= FASTEST and (scene.steady or _loads(scene) is not None)
 
 
 def turning_without_jams(scene: Scene, designs: Array) -> Array:

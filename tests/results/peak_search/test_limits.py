@@ -10,6 +10,7 @@ import linksweep as ls
 from benchmarks.accuracy import missed
 from linksweep.engine.quantity import Limit, Row
 from linksweep.physics.algebra import planar
+from linksweep.results.peak_search.clear import clear_designs
 from linksweep.results.peak_search.limits import find_limits
 from linksweep.scene.pairs import quantities_at
 
@@ -191,3 +192,23 @@ def test_peaks_are_those_by_closed_forms(name, without_closed_forms):
     peaks = ls.peaks(family.scene(np.random.default_rng(4), 40))
     for variable in ("F12_peak", "F32_peak", "F43_peak", "T12_max", "T12_min", "status"):
         np.testing.assert_allclose(peaks[variable], expected[variable], rtol=2e-11, err_msg=variable)
+
+
+@pytest.mark.parametrize(("name", "longest"), [("knuckle-press", 4.0), ("watt-2", 1.3)])
+def test_designs_clear_of_all_limits_are_those_in_which_a_search_finds_none(name, longest, monkeypatch):
+    press, random = ls.example(name).mechanism, np.random.default_rng(6)
+    crank = press.parts[press.topology.crank]
+    crank = replace(crank, length=over_designs(crank.length * random.uniform(0.3, longest, 150)))
+    press = replace(press, parts={**press.parts, press.topology.crank: crank})
+    scene, designs = ls.Scene(press, 1.0).unloaded, np.arange(150)
+    clear, (row, angle, part) = clear_designs(scene, scene.table.limits, designs)
+    by_both = find_limits(scene, scene.table.limits, designs)
+    nothing = row[:0], angle[:0], part[:0]
+    monkeypatch.setattr("linksweep.results.peak_search.limits.clear_designs", lambda *_: (designs[:0], nothing))
+    searched = find_limits(scene, scene.table.limits, designs)
+    for both, alone in zip(by_both, searched, strict=True):
+        np.testing.assert_allclose(both, alone, rtol=0.0, atol=1e-10)
+    assert 20 < len(clear) < 140 and np.isnan(searched.near_toggle[clear]).all()
+    other = np.setdiff1d(np.flatnonzero(searched.assembly == 0.0), clear)
+    assert np.isfinite(searched.near_toggle[other]).any(axis=1).mean() > 0.2
+    assert set(np.bincount(row, minlength=150)[clear]) == ({2, 4} if press.rubs else {0})  # 4 at a stretched joint
