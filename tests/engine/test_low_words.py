@@ -19,8 +19,8 @@ def rows(samples, x, y, low):
         low[j] = pq
 
 
-def kernel(x, y, low):
-    rows(len(x), x, y, low)
+def kernel(samples, x, y, low):
+    rows(samples, x, y, low)
 """
 SPECIAL = (0.0, -0.0, 1.0, -1.0, 2.0, -0.5, 3.0, 2.0**27 + 1.0, 1.0 + 2.0**-52, float("nan"), float("inf"))
 
@@ -42,10 +42,10 @@ def numbers(name: str) -> tuple[np.ndarray, np.ndarray]:
 
 @pytest.mark.parametrize("name", sorted(LOW_WORDS))
 def test_compiled_and_plain_have_equal_bits(name):
-    kernel = compile.compiled.__wrapped__(KERNEL.replace("LOW", name), signature="void(f8[::1], f8[::1], f8[::1])")
+    kernel = compile.compiled.__wrapped__(KERNEL.replace("LOW", name), kinds=(compile.INTEGER, *[compile.FLOATS] * 3))
     x, y = numbers(name)
     result = np.empty(len(x))
-    kernel(x, y, result)
+    kernel(len(x), x, y, result)
     with np.errstate(invalid="ignore"):
         expected = getattr(low_words, name)(x, y)
     np.testing.assert_array_equal(np.isnan(result), np.isnan(expected))
