@@ -14,7 +14,7 @@ from linksweep.engine.run import Field
 from linksweep.results.compute import counts_without_angles
 from linksweep.results.dataset import flags
 from linksweep.results.peak_search.exact import exact_peaks
-from linksweep.results.peak_search.jams import jam_tables, may_jam
+from linksweep.results.peak_search.friction.jams import jam_tables, may_jam
 from linksweep.results.peak_search.limits import Limits, assembly_of, limits_of
 from linksweep.scene.dimensions import aligned
 from linksweep.scene.scene import Scene

@@ -20,7 +20,7 @@ from linksweep.results.peak_search.approaches import (
     approaches_of_turns,
     concatenated,
 )
-from linksweep.results.peak_search.contacts import contact_angles
+from linksweep.results.peak_search.friction.contacts import contact_angles
 from linksweep.results.peak_search.groups import Group, crossing
 from linksweep.results.peak_search.limits import graded_samples
 from linksweep.scene.pairs import Array, by_row, in_period

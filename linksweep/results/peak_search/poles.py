@@ -20,8 +20,8 @@ from linksweep.chains.finding import Finding
 from linksweep.engine.run import Field
 from linksweep.results.compute import surely_ok
 from linksweep.results.peak_search.between import PARTLY
+from linksweep.results.peak_search.friction.jams import jammed_designs, may_jam
 from linksweep.results.peak_search.groups import Group, all_at_once
-from linksweep.results.peak_search.jams import jammed_designs, may_jam
 from linksweep.results.peak_search.limits import limits_of
 from linksweep.scene.dimensions import side_by_side
 from linksweep.scene.pairs import Array

@@ -5,8 +5,8 @@ import pytest
 
 import linksweep as ls
 from benchmarks.speed.kernel import way
+from linksweep.results.peak_search.friction.jams import jammed_designs
 from linksweep.results.peak_search.groups import groups
-from linksweep.results.peak_search.jams import jammed_designs
 from linksweep.results.peak_search.paths import distinct, jump_angles
 
 CRANK = ls.Link(0.08, 0.4, 3e-4)
