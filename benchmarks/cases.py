@@ -90,7 +90,7 @@ def scene(q: Design, loads: tuple[ls.Load, ...] = ()) -> ls.Scene:
 
 
 def _number(value: Number) -> float | xr.DataArray:
-    return xr.DataArray(value[:, 0], dims="design") if np.ndim(value) else value
+    return xr.DataArray(value[:, 0], dims="design") if isinstance(value, np.ndarray) else value
 
 
 def stacked(cycle: xr.Dataset, names: tuple[str, ...] = NINE) -> Array:

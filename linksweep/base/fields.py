@@ -259,8 +259,13 @@ def choice(default: str, *others: str) -> Any:
     return of_kind(ChoiceField((default, *others)), default)
 
 
+PLAIN_MARK = "_plain"
+
+
 def field_problems(owner: Any, prefix: str = "") -> list[str]:
     """Return the problems of a dataclass's fields by their kinds, each with its path; a default is no problem."""
+    if is_plain(owner):
+        return []
     problems: list[str] = []
     for name, kind, default in declared(owner):
         value = getattr(owner, name)
@@ -270,13 +275,21 @@ def field_problems(owner: Any, prefix: str = "") -> list[str]:
 
 
 def converted_fields(owner: Any) -> dict[str, Any]:
-    """Return those fields of a dataclass that change when its numbers become float64 in the units of their kinds."""
-    changed = {}
+    """Return those fields of a dataclass that change when its numbers become float64 in the units of their kinds, and
+    the mark that `is_plain` looks for."""
+    changed, plain = {}, True
     for name, kind, _ in declared(owner):
         value = getattr(owner, name)
-        if not kind.sound(value) and (new := kind.converted(value)) is not value:
-            changed[name] = new
-    return changed
+        if not kind.sound(value):
+            plain = False
+            if (new := kind.converted(value)) is not value:
+                changed[name] = new
+    return {PLAIN_MARK: True} if plain else changed
+
+
+def is_plain(owner: Any) -> bool:
+    """Return whether all fields of a dataclass were plain and sound when it was made: no arrays, and no problems."""
+    return PLAIN_MARK in vars(owner)
 
 
 def left_out(value: Any) -> bool:

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -195,7 +195,9 @@ def _align(plan: Plan, dims: frozenset[str], field: Field) -> Numbers:
     return values.reshape([next(shape) if dim in dims else 1 for dim in (*plan.loops, plan.index)])
 
 
-def _field(dims: tuple[str, ...], value: Numbers, sizes: Sizes) -> Field:
+def _field(dims: tuple[str, ...], value: Any, sizes: Sizes) -> Field:
+    if dims and value.ndim == len(dims):
+        return Field(dims, value)
     return Field(dims, value.reshape(tuple(sizes[dim] for dim in dims)))  # np.reshape takes as long as a row of samples
 
 

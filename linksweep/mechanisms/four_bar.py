@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
 
 from linksweep.base.fields import of_kind, parameter
-from linksweep.base.frozen import bare
+from linksweep.base.frozen import bare, cached_property
 from linksweep.base.validate import Number, is_lazy
 from linksweep.chains.on_crank import rrr
 from linksweep.chains.on_crank.machine import OnCrank

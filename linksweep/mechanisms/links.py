@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
@@ -15,7 +16,7 @@ import numpy as np
 
 from linksweep.base.degrees import cos_sin
 from linksweep.base.equality import ByContent
-from linksweep.base.fields import CheckedPartField, PairField, declared, of_kind, parameter, word
+from linksweep.base.fields import CheckedPartField, PairField, declared, is_plain, of_kind, parameter, word
 from linksweep.base.frozen import bare, normalise
 from linksweep.base.validate import Number, Rule, as_float, overflow_problems
 from linksweep.mechanisms.beams.sections import SECTION, AnySection, Section, rectangle
@@ -342,7 +343,7 @@ class LinkField(CheckedPartField):
     def problems(self, path: str, value: Any) -> list[str]:
         if problems := super().problems(path, value):
             return problems
-        with np.errstate(over="ignore"):
+        with nullcontext() if is_plain(value) else np.errstate(over="ignore"):
             return overflow_problems(path, getattr(bare(value), "inertia", 0.0), "moment of inertia")
 
 

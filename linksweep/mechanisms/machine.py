@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any, ClassVar
 
 from linksweep.base.degrees import cos_sin
+from linksweep.base.frozen import cached_property
 from linksweep.base.validate import Number, refuse
 from linksweep.chains.between_links import force_name
 from linksweep.chains.chain import Chain, Own, chain, table

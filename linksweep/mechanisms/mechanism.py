@@ -6,13 +6,13 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, fields, replace
-from functools import cached_property
 from typing import Any, ClassVar, Self, TypeVar
 
 import numpy as np
 
 from linksweep.base.equality import ByContent
 from linksweep.base.fields import ANYTHING, declared, field_problems
+from linksweep.base.frozen import cached_property
 from linksweep.base.validate import Number, refuse
 from linksweep.chains.finding import Checks
 from linksweep.chains.gears import Geared

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import lru_cache
 from inspect import signature
 from typing import Any, ClassVar
 
 import numpy as np
 
+from linksweep.base.frozen import cached_property
 from linksweep.base.validate import Number
 from linksweep.chains.chain import Own
 from linksweep.chains.finding import Checks
@@ -70,14 +71,15 @@ class SingleDyad(Machine):
         beyond = "offset" in lengths
         longest = "offset" if beyond else max(lengths, key=lengths.__getitem__)
         excess = 2.0 * abs(lengths[longest]) - sum(map(abs, lengths.values()))
+        if not excess > 0.0:
+            return []
         others = " + ".join(name for name in lengths if name != longest)
         path = f"{longest}.length" if longest in self.parts else longest
         than, advice = ("beyond the reach of", "reduce it") if beyond else ("longer than", "shorten it")
-        sentence = (
+        return [
             f"{path} = {lengths[longest]:.15g} m is {excess:.6g} m {than} {others}: the mechanism cannot be assembled "
             f"at any angle; {advice} or lengthen {'them' if beyond else 'the others'}"
-        )
-        return [sentence] if excess > 0.0 else []
+        ]
 
     def parameters(self) -> dict[str, Any]:
         numbers = {name: getattr(self, OWN[name]) for name in self.first if name in OWN}

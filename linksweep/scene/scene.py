@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -24,7 +24,7 @@ from linksweep.base.fields import (
     of_kind,
     parameter,
 )
-from linksweep.base.frozen import bare, cached_copy, field_values, normalise, with_sound
+from linksweep.base.frozen import bare, cached_copy, cached_property, field_values, normalise, with_sound
 from linksweep.base.validate import UNITS, Number, Rule, choice_problems, quote, refuse
 from linksweep.engine.quantity import Table
 from linksweep.engine.run import Grid
@@ -269,6 +269,8 @@ class Scene(ByContent):
     @cached_property
     def steady(self) -> bool:
         """True where no parameter changes over the revolution."""
+        if not self._not_plain and not self.loads:
+            return True
         over_angle = any(self.mechanism.index in array.dims for array in self.arrays.values())
         return not (over_angle or self.functions) and self._evaluated(self.grid(1)) is self
 

@@ -35,8 +35,8 @@ def evaluate(plan: Plan, values: Values, sizes: Mapping[str, int]) -> Values:
         numbers = _numbers(program, values, of_designs)
         registers = np.empty((program.registers, TILE))
         interpret(program.code, registers, numbers, np.array(places, dtype=np.int64), results.shape[2])
-        for node, result in zip(program.results, results, strict=True):
-            values[node] = result[:, :samples].reshape(shape) if program.dims else result[0, 0]
+        stored = results[..., :samples].reshape(len(results), *shape) if program.dims else results[:, 0, 0]
+        values.update(zip(program.results, stored, strict=True))
     return values
 
 
