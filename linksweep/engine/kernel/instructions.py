@@ -14,7 +14,7 @@ from functools import partial
 from typing import Any
 
 from linksweep.engine.kernel import ahead
-from linksweep.engine.kernel.ahead import chains
+from linksweep.engine.kernel.ahead import longest_chains_first
 from linksweep.engine.trace import arctangent
 from linksweep.engine.trace.operators import interpret, traced_arctangent
 
@@ -141,8 +141,7 @@ class Instructions:
                 builder.store(self.wide(self.as_number(x)), place)
             body = builder.block
             yield k, values
-            length = chains(body.instructions)
-            body.instructions.sort(key=lambda x: -length[x])  # stores remain last, in their order
+            longest_chains_first(body)
 
     def slot(self, value: Any) -> Any:
         """Return a place in memory that holds a value."""

@@ -56,6 +56,7 @@ from types import FunctionType
 from typing import Any
 
 from linksweep.engine.kernel import instructions, reduce, running, translate
+from linksweep.engine.kernel.ahead import longest_chains_first
 from linksweep.engine.kernel.instructions import REGISTER, Instructions
 from linksweep.engine.kernel.machine_code import ROW, Array, new_function, write_call
 
@@ -252,7 +253,9 @@ class _Writer:
         """Write a loop over samples one by one, as `in_vectors` does."""
         loop = self.instructions.loop(self.integer(first), self.integer(last))
         for j, _ in self._inside(loop):
+            body = self.builder.block
             yield _Value(self, j, ONE_BY_ONE)
+            longest_chains_first(body)
 
     def _inside(self, loop: AbstractContextManager[Any]) -> Iterator[Any]:
         """Yield what a loop yields, while it is being written."""
