@@ -14,6 +14,7 @@ from matplotlib.offsetbox import AnnotationBbox, TextArea
 @pytest.fixture(autouse=True)
 def closed_figures(monkeypatch):
     monkeypatch.setattr(plt, "show", lambda *a, **k: pytest.fail("a plot opened a window"))
+    monkeypatch.setitem(mpl.rcParams, "font.sans-serif", ["DejaVu Sans"])  # as the command line sets it
     before = dict(mpl.rcParams)
     yield
     assert dict(mpl.rcParams) == before
