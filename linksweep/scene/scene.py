@@ -269,10 +269,9 @@ class Scene(ByContent):
     @cached_property
     def steady(self) -> bool:
         """True where no parameter changes over the revolution."""
-        if not self._not_plain and not self.loads:
-            return True
         over_angle = any(self.mechanism.index in array.dims for array in self.arrays.values())
-        return not (over_angle or self.functions) and self._evaluated(self.grid(1)) is self
+        plain = not self._not_plain and not self.loads
+        return plain or (not (over_angle or self.functions) and self._evaluated(self.grid(1)) is self)
 
     @property
     def changes_speed(self) -> bool:

@@ -154,11 +154,11 @@ def test_rows_are_subtracted_in_whole_registers(monkeypatch):
     monkeypatch.setattr(cache, "cache_folder", lambda: None)
     texts, optimised = [], machine_code._optimised
 
-    def shown(target, *what):
+    def record(target, *what):
         texts.append(target.emit_assembly(optimised(target, *what)))
         return optimised(target, *what)
 
-    monkeypatch.setattr(machine_code, "_optimised", shown)
+    monkeypatch.setattr(machine_code, "_optimised", record)
     assert solve.Solver("solve").compiled
     (assembly,) = texts
     for operation in ("mul", "sub", "div"):

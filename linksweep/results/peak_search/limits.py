@@ -105,7 +105,7 @@ class Limits(NamedTuple):
     def zeros_of(self, limits: tuple[Limit, ...], kind: str) -> Array:
         """Return the zeros (design, nth) [degree] of one kind, of these limits."""
         parts = [k for k, limit in enumerate(limits) if limit.zeros == kind]
-        return self.zeros[:, parts].reshape(len(self.zeros), -1)
+        return self.zeros[:, parts].reshape(len(self.zeros), len(parts) * self.zeros.shape[2])  # of no design, too
 
 
 def assembly_of(scene: Scene, threads: int | None = None) -> Field:
