@@ -60,7 +60,7 @@ def _clear_rows(
     scene: Scene, limits: tuple[Limit, ...], designs: Array, rows: Array
 ) -> tuple[Array, tuple[Array, Array, Array]]:
     """Return the same of the designs in some of the rows."""
-    found = [(np.empty(0, dtype=int), np.empty(0), np.empty(0, dtype=int))]
+    parts = [(np.empty(0, dtype=int), np.empty(0), np.empty(0, dtype=int))]
     far = [f"clear_{limit.name}_{name}" for limit in limits if limit.zeros != "jump" for name in limit.signals]
     if far and len(rows):
         own = {WIDTH: np.ones(len(rows))}
@@ -69,8 +69,8 @@ def _clear_rows(
     for k, limit in enumerate(limits):
         for signal in limit.signals if limit.zeros == "jump" and len(rows) else ():
             row, angle = _changes_of_sign(scene, limits, designs[rows], signal)
-            found.append((rows[row], angle, np.full(len(row), k)))
-    row, angle, part = (np.concatenate(parts) for parts in zip(*found, strict=True))
+            parts.append((rows[row], angle, np.full(len(row), k)))
+    row, angle, part = (np.concatenate(numbers) for numbers in zip(*parts, strict=True))
     return rows, (row, angle, part)
 
 

@@ -1,2 +1,3 @@
-"""Where friction changes: `jams` finds the angles at which it jams a slide, `contacts` those at which a contact of two
-bears nothing."""
+"""Angles at which friction changes: `jams` finds those at which it jams a slide, `contacts` those at which one of two
+contacts bears nothing.
+"""
