@@ -84,7 +84,7 @@ def test_a_force_that_rises_only_just_before_friction_jams_the_machine():
 
 
 def test_trials_that_differ_by_rounding_alone_hide_no_peak():
-    """Where a piece starts at a narrow near-toggle, its parameter shows the summit beside it twice, around a dip."""
+    """A piece that starts at a narrow near-toggle shows the summit beside it twice, around a dip."""
     crank = ls.Link(0.38446641709615703, 1.1643321338097556, 0.01219397584956949, 0.3090761981568982, 69.68720050624808)
     rod = ls.Link(0.38446905430651646, 1.9101761165790034, 0.03101184082502945, 0.2769315663345262, 0.0)
     machine = ls.SliderCrank(crank, rod, 0.3653730903321438, 0.0, 0.000778554849111484, branch="crossed")
