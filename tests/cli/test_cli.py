@@ -208,7 +208,7 @@ def test_check_of_a_linkage_keeps_titles_and_values_apart(capsys):
     ls.save(ls.example("watt-2"), "watt.toml")
     assert main(["check", "watt.toml"]) == 0
     lines = capsys.readouterr().out.splitlines()
-    assert all(re.fullmatch(r"[A-Za-z ]+: +\S.*", line) for line in lines)
+    assert all(re.fullmatch(r"[A-Za-z0-9 ]+: +\S.*", line) for line in lines)
     assert len({re.search(r": +", line).end() for line in lines}) == 1
 
 

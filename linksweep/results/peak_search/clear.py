@@ -49,11 +49,19 @@ def clear_designs(scene: Scene, limits: tuple[Limit, ...], designs: Array) -> tu
     """Return the rows of those designs of a mechanism alone that are clear of all limits but jumps; and the row, the
     angle [degree] and the limit's number of each of their jumps."""
     simple = limits and scene.steady and scene.period == scene.mechanism.period
-    every = np.arange(len(designs) if simple and scene.mechanism.fastest <= FASTEST else 0)
+    simple = simple and scene.mechanism.fastest <= FASTEST and _all_move(scene, limits, designs)
+    every = np.arange(len(designs) if simple else 0)
     parts = np.split(every, range(AT_ONCE, len(every), AT_ONCE))
     rows, jumps = zip(*(_clear_rows(scene, limits, designs, part) for part in parts), strict=True)
     row, angle, limit = (np.concatenate(numbers) for numbers in zip(*jumps, strict=True))
     return np.concatenate(rows), (row, angle, limit)
+
+
+def _all_move(scene: Scene, limits: tuple[Limit, ...], designs: Array) -> bool:
+    """Return whether the signals of all limits change with the angle: not where parts of a linkage stand still."""
+    names, one = [name for limit in limits for name in limit.signals], designs[:1]
+    request, _ = _evaluated(scene, limits, one, names, {WIDTH: np.ones(len(one))}, ON_TURN)
+    return all(scene.mechanism.index in request.outputs[name].dims for name in names)
 
 
 def _clear_rows(
