@@ -92,5 +92,5 @@ def _problems(damage: Callable[[Path, np.random.Generator], None], random: np.ra
 def _root_of_two() -> float:
     """Compile a kernel, or load it from the cache, as a new process would."""
     x = np.array([2.0])
-    kernels.compiled.__wrapped__(SOURCE, signature="void(f8[::1])")(x)
+    kernels.compiled.__wrapped__(SOURCE, kinds=("f8*",))(x)
     return float(x[0])
