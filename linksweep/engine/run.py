@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -250,15 +251,25 @@ def _execute(
 
 
 def over_threads(work: Callable[[int, int], None], length: int, workers: int, threads: int | None = None) -> None:
-    """Run work(first, last) over 0 … length by at most `workers` threads, as cores and `threads` allow."""
+    """Run work(first, last) over 0 … length by at most `workers` threads, this one among them, as cores and `threads`
+    allow."""
     workers = min(workers, length)
     workers = min(workers, threads or os.cpu_count() or 1) if workers > 1 else workers
     if workers <= 1:
         work(0, length)
         return
     bounds = [length * k // (4 * workers) for k in range(4 * workers + 1)]
-    with ThreadPoolExecutor(workers) as pool:
-        list(pool.map(work, bounds[:-1], bounds[1:]))
+    parts = iter([*pairwise(bounds)])
+
+    def work_on_parts() -> None:
+        for first, last in parts:  # each is taken by one thread
+            work(first, last)
+
+    with ThreadPoolExecutor(workers - 1) as pool:
+        others = [pool.submit(work_on_parts) for _ in range(workers - 1)]
+        work_on_parts()  # this thread works, too: a second one started beside it may wait for its core
+        for other in others:
+            other.result()
 
 
 def _samples(plan: Plan, grid: Grid, sizes: Sizes) -> int:
