@@ -32,11 +32,11 @@ from linksweep.engine.peaks.brackets import (
 HALF = 24
 """Samples on either side of the middle of each half turn. With 96 a turn, `benchmarks.accuracy.missed` finds no design
 of a million whose peak the search misses."""
+FEW = 8
+"""Samples on either side of the middle of a short piece of a turn, on which a signal has few summits."""
 EVENLY = 0.12
 """Share of the samples that are spread evenly over x, whatever the scale of the grade: without them the search missed 2
 peaks of a million, between samples 20 degrees apart."""
-FEW = 8
-"""The same for short pieces of a turn, on which a signal has few summits."""
 SAMPLES = 4 * HALF
 PLACED = 2 * HALF + 2
 """Places of each half turn: its samples, and one before and after."""
