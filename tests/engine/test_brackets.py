@@ -72,3 +72,16 @@ def test_two_equal_peaks_are_found_from_the_dip_between_them(away):
     value, place, _, beyond = best[:, 0]
     assert 5.0 + 5e-9 - value <= min(beyond, 5e-11)
     assert abs(place) == pytest.approx(away, rel=1e-3)
+
+
+def test_no_trial_lies_so_close_to_the_middle_that_rounding_alone_tells_them_apart():
+    """A peak was missed where one fell 7e-7 of the width from the middle: the secant through both allowed no rise."""
+    columns = 100_000
+    table, middle = np.zeros((b.BRACKET_ROWS, columns)), np.linspace(-0.9, 0.9, columns)
+    table[[b.XA, b.XC]], table[b.XB] = [[-1.0], [1.0]], middle
+    table[[b.FA, b.FB, b.FC]] = [[-1.0], [0.0], [-1.5]]
+    table[b.WIDTH], table[b.FIRST_WIDTH] = 8.0, 2.0
+    b.place_trials(table, columns)
+    away = np.abs(table[list(b.TRIALS)] - middle)
+    assert ((away == 0.0) | (away >= b.NEARBY * 2.0)).all()
+    assert (away == 0.0).any()

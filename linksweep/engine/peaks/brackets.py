@@ -17,8 +17,8 @@ NARROW = 1e-4
 """Width, relative to the first, down to which a bracket is refined at least: its parabola then places the peak to 1e-5
 degree."""
 NEARBY = 1e-5
-"""Step from the middle of a bracket, relative to its width, below which no trial is made: rounding alone would tell its
-value from that in the middle."""
+"""Distance from the middle of a bracket, relative to its width, below which no trial is made: rounding alone would tell
+its value from that in the middle, and the secant through both would allow no rise."""
 RISE = 1e-11
 """Rise that may remain possible when a bracket closes, relative to the peak: a tenth of the promised 1e-10."""
 NOISE = 1e-15
@@ -49,14 +49,14 @@ def place_trials(a, f_a, b, f_b, c, f_c, last_width, first_width):
     """Place trials about the vertex of the parabola, or, where the last round shrank the bracket little, bisect."""
     before, after, width = b - a, c - b, c - a
     step = vertex_step(a, f_a, b, f_b, c, f_c)
-    vertex = (abs(step) < NEARBY * width).where(b, b + step)
+    vertex = b + step
     spread = 0.3 * width * width / first_width  # a parabola's vertex errs by the square of the bracket's width
     reach = larger((spread < 0.2 * width).where(spread, 0.2 * width), 1e-6 * first_width)
     longer = (after < before).where(-0.25 * before, 0.25 * after)
     trials, bisecting = (vertex, vertex - reach, vertex + reach), (b + longer, b - 0.5 * before, b + 0.5 * after)
     for sound in (width < 0.6 * last_width, a < vertex - reach, vertex + reach < c):
         trials = tuple(sound.where(x, y) for x, y in zip(trials, bisecting, strict=True))
-    return *trials, width
+    return *((abs(x - b) < NEARBY * width).where(b, x) for x in trials), width
 
 
 @lanewise((*POINTS, *TRIALS, *VALUES, FIRST_WIDTH, FLOOR), (*POINTS, REMAINING, DONE, TOP_X, TOP_BEYOND))
