@@ -11,15 +11,14 @@ import shutil
 import subprocess
 import tempfile
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from functools import cache, partial
-from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 
 from benchmarks.rivals.peers import Array, Design, grid
 from linksweep.engine.blocks import block
+from linksweep.engine.run import over_threads
 
 # sqrt is vectorised only with -fno-math-errno; -fno-trapping-math makes the comparisons of peaks cheaper.
 # Neither changes a value. -ffast-math would (it reorders sums): left out. a * b + c is contracted by default.
@@ -79,14 +78,11 @@ def bind_move(lib: ctypes.CDLL, n_angles: int, threads: int) -> Callable[[], obj
     n = -(-n_angles // 8) * 8
     arrays = block(3, n), block(9, n)
     arrays[0][:] = 1.0
-    bounds = [n // 8 * k // threads * 8 for k in range(threads + 1)]
-    parts = [_bind(lib.move, [*part, n], [*arrays]) for part in pairwise(bounds)]
 
-    def call() -> None:
-        with ThreadPoolExecutor(threads) as pool:
-            list(pool.map(lambda part: part(), parts))
+    def move(first: int, last: int) -> None:
+        _bind(lib.move, [8 * first, 8 * last, n], [*arrays])()
 
-    return call
+    return partial(over_threads, move, n // 8, threads, threads)
 
 
 def store(lib: ctypes.CDLL, design: Design, theta2: Array) -> Array:

@@ -258,18 +258,36 @@ def over_threads(work: Callable[[int, int], None], length: int, workers: int, th
     if workers <= 1:
         work(0, length)
         return
-    bounds = [length * k // (4 * workers) for k in range(4 * workers + 1)]
-    parts = iter([*pairwise(bounds)])
+    parts = iter(shares(length, workers))
 
     def work_on_parts() -> None:
         for first, last in parts:  # each is taken by one thread
             work(first, last)
 
-    with ThreadPoolExecutor(workers - 1) as pool:
-        others = [pool.submit(work_on_parts) for _ in range(workers - 1)]
-        work_on_parts()  # this thread works, too: a second one started beside it may wait for its core
+    others = [_pool(os.getpid()).submit(work_on_parts) for _ in range(workers - 1)]
+    try:
+        work_on_parts()  # this thread works, too: a second one may wait for its core
+    finally:
         for other in others:
-            other.result()
+            if not other.cancel():  # it has begun
+                other.result()
+
+
+def shares(length: int, workers: int) -> list[tuple[int, int]]:
+    """Return parts of 0 … length for workers to take in turn, ever smaller ones: so they end at nearly the same time,
+    though one of them is held up."""
+    bounds, least = [0], -(-length // (16 * workers))
+    while bounds[-1] < length:
+        part = max((length - bounds[-1]) // (2 * workers), least)
+        bounds.append(min(bounds[-1] + part, length))
+    return [*pairwise(bounds)]
+
+
+@lru_cache(maxsize=1)
+def _pool(_process: int) -> ThreadPoolExecutor:
+    """Return the threads that work beside those which call, started once: that took as long as 50 000 samples. A forked
+    process has none of those of the first."""
+    return ThreadPoolExecutor(os.cpu_count(), thread_name_prefix="linksweep")
 
 
 def _samples(plan: Plan, grid: Grid, sizes: Sizes) -> int:

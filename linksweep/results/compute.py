@@ -204,9 +204,9 @@ def zeros_of(name: str, scene: Scene, grid: Grid, kind: type = float) -> Field:
 
 def blank(fields: dict[str, Field], status: Field) -> None:
     """Make samples NaN whose status is not 0 for any design that shares the sample."""
-    ok = Field(status.dims, status.values == 0)
-    if ok.values.all():
+    if not status.values.any():
         return
+    ok = Field(status.dims, status.values == 0)
     for name, field in fields.items():
         fields[name] = only_where(ok, field)
 
