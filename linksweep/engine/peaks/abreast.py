@@ -18,12 +18,7 @@ from linksweep.engine.peaks.brackets import (
     F1,
     F2,
     F3,
-    FA,
     FAR,
-    FB,
-    FC,
-    FIRST_WIDTH,
-    FLOOR,
     NOISE,
     PEAK,
     PEAK_FAR,
@@ -32,19 +27,17 @@ from linksweep.engine.peaks.brackets import (
     ROUNDS,
     SIGNAL,
     TAG,
-    WIDTH,
     X1,
     X2,
     X3,
-    XA,
-    XC,
     advance,
     insert_trials,
     larger,
     place_trials,
 )
 from linksweep.engine.peaks.lanewise import around, lanewise
-from linksweep.engine.peaks.search import GRADES, HALF, SAMPLES, might_reach, noise
+from linksweep.engine.peaks.search import GRADES, HALF, SAMPLES
+from linksweep.engine.peaks.stragglers import open_brackets, slopes_between
 
 EVALUATIONS = BEST_ROWS
 """Row of `best` after those of a refined bracket: the number of evaluations of a signal."""
@@ -70,7 +63,9 @@ VERTEX, CURVATURE, THIRD = range(PLACES + 6, PLACES + 9)
 Z_LEFT, F_LEFT, Z_RIGHT, F_RIGHT, Z_MIDDLE, F_MIDDLE, Z_LAST, F_LAST = range(PLACES + 9, PLACES + 17)
 # the rise to the parabola's vertex, and what an error of its place costs; whether that vertex is sound
 GAIN, LOSS, SOUND = range(PLACES + 17, PLACES + 20)
-STATE_ROWS = PLACES + 20
+# the sample before the last two
+BEFORE = PLACES + 20
+STATE_ROWS = PLACES + 21
 
 FIVE, THREE = tuple(range(SAMPLED, SAMPLED + 5)), tuple(range(PLACES, PLACES + 3))
 NOTHING_YET = {SUMMIT: 0.0, REACH: -math.inf, OTHER: -math.inf}
@@ -171,17 +166,44 @@ def comparison_of_half(half):
 
     @around(NOTHING_YET)
     def compare(left, value, right, number, summit, reach, other):
-        height = summit_height(left, value, right)
-        height = (number < 1.0).where(-math.inf, (number > 2.0 * half + 1.0).where(-math.inf, height))
+        height = on_half(number, half, summit_height(left, value, right))
         return with_summit(height, number + (half - 1.0), summit, reach, other)
 
     return compare
+
+
+def close_comparison_of_half(half):
+    """Return the same for samples that may lie too far apart: also note summits between neighbours."""
+
+    @around({**NOTHING_YET, BEFORE: math.nan})
+    def compare(left, value, right, number, summit, reach, other, before):
+        between = (number < 2.0).where(-math.inf, height_between(before, left, value, right))
+        height = on_half(number, half, larger(between, summit_height(left, value, right)))
+        return *with_summit(height, number + (half - 1.0), summit, reach, other), left
+
+    return compare
+
+
+def on_half(number, half, height):
+    """Return a height about a sample of one half of a turn; −inf about the one before these and the one after them."""
+    return (number < 1.0).where(-math.inf, (number > 2.0 * half + 1.0).where(-math.inf, height))
 
 
 def summit_height(left, value, right):
     """Return the height that a summit about a sample may reach; −inf about a sample that is none."""
     height = ((value - left) - (right - value)) + value
     return (left < value).where((value < right).where(-math.inf, height), -math.inf)
+
+
+def height_between(before, left, value, right):
+    """Return the height that a summit between two samples may reach, of four that all rise or all fall: by tangents of
+    the cubic through these, −inf where it does not turn."""
+    rise, fall = slopes_between(before, left, value, right)
+    rising, falling = (fall < 0.0).where(left + rise, -math.inf), (rise > 0.0).where(value - fall, -math.inf)
+    height = (left < value).where(rising, falling)
+    for turn in ((left - before) * (value - left), (value - left) * (right - value)):
+        height = (turn > 0.0).where(height, -math.inf)
+    return height
 
 
 def with_summit(height, number, summit, reach, other):
@@ -299,48 +321,6 @@ def keep_peaks(state, column, lanes, best, tag):
             best[row, tag + lane] = state[row, column + lane]
     for lane in range(lanes):
         best[EVALUATIONS, tag + lane] += SAMPLES
-
-
-def open_brackets(rows, x, half, lanes, columns, k, lane, known, even, signal, tag, brackets, count, best):
-    """Open brackets about all summits of a signal that may exceed its peak so far, that of the `known` summit, or else
-    its highest sample (−1: none is known); return their number. `even` signals are the same on both halves."""
-    samples, confirmed = 4 * half, known >= 0
-    if not confirmed:
-        top, at = -math.inf, 0
-        for j in range(samples):
-            if rows[j * columns + k] > top:
-                top, at = rows[j * columns + k], j
-        floor = noise(sample_of(rows, at - 1, samples, columns, k), top, sample_of(rows, at + 1, samples, columns, k))
-        best[PEAK, tag], best[BEYOND, tag] = top if top > -math.inf else math.nan, 10.0 * floor
-        far = at // (2 * half)
-        best[PEAK_X, tag], best[PEAK_FAR, tag] = x[(at + 1 + 2 * far) * lanes + lane], float(far)
-    top = best[PEAK, tag]
-    if not abs(top) < math.inf:
-        return count
-    first, last = (half, 3 * half) if even else (0, samples - 1)
-    left, value = sample_of(rows, first - 1, samples, columns, k), sample_of(rows, first, samples, columns, k)
-    for j in range(first, last + 1):
-        right = sample_of(rows, j + 1, samples, columns, k)
-        floor = noise(left, value, right)
-        least = top + (RISE * abs(top) if confirmed else 10.0 * floor)
-        if left < value and value >= right and j != known and might_reach(left, value, right, 1.0) > least:
-            far = j // (2 * half)
-            for near in range(3):
-                brackets[XA + 2 * near, count] = x[(j + near + 2 * far) * lanes + lane]
-            brackets[FA, count], brackets[FB, count], brackets[FC, count] = left, value, right
-            brackets[FAR, count], brackets[SIGNAL, count] = float(far), float(signal)
-            brackets[TAG, count], brackets[FLOOR, count] = tag, floor
-            width = brackets[XC, count] - brackets[XA, count]
-            brackets[WIDTH, count], brackets[FIRST_WIDTH, count] = 4.0 * width, width  # 4.0: not counted as slow
-            count += 1
-        left, value = value, right
-    return count
-
-
-def sample_of(rows, j, samples, columns, k):
-    """Return a sample of one signal and lane, around the turn; −inf where there is no value."""
-    value = rows[(j + samples) % samples * columns + k]
-    return value if value == value else -math.inf
 
 
 def refine(brackets, count, lanes, width, start, constants, gathered, evaluate, best):

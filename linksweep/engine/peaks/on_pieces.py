@@ -19,8 +19,8 @@ from linksweep.engine.peaks.abreast import (
     OTHER,
     REACH,
     SUMMIT,
+    close_comparison_of_half,
     comparison_of_half,
-    open_brackets,
     pick_sample,
     place_samples,
     refine,
@@ -28,6 +28,7 @@ from linksweep.engine.peaks.abreast import (
 )
 from linksweep.engine.peaks.brackets import BEYOND, PEAK
 from linksweep.engine.peaks.search import FEW, HALF
+from linksweep.engine.peaks.stragglers import open_brackets
 
 # rows of `summits`: piece, signal, and place in `highest`; the best summit's number, the heights that it and any other
 # may reach
@@ -37,7 +38,11 @@ HIDDEN = 0.1
 """Most that a signal may rise between a sample and its neighbours if these are as high, relative to the fall to the
 next ones. About the end of a piece signals are even, and a quartic rises by 1/48."""
 
+NARROW = 0.5
+"""Width of a near-toggle below which samples may lie too far apart to show every summit."""
+
 compare_sample_of_half, compare_sample_of_few = (comparison_of_half(half) for half in (HALF, FEW))
+compare_closely = close_comparison_of_half(HALF)
 
 
 def search(
@@ -63,10 +68,12 @@ def search(
             if place_samples(constants[block], lanes, grades, x[block]) > 0:
                 call(share, (constants[block], x[block]))
             call(sample, (constants[block], x[block], rows[block]))
-            if half == HALF:
-                compare_sample_of_half(rows[block, (HALF - 1) * columns :], 2 * HALF + 3, state, columns)
-            else:
+            if half == FEW:
                 compare_sample_of_few(rows[block, (FEW - 1) * columns :], 2 * FEW + 3, state, columns)
+            elif narrowest(constants[block], lanes) < NARROW:
+                compare_closely(rows[block, (HALF - 1) * columns :], 2 * HALF + 3, state, columns)
+            else:
+                compare_sample_of_half(rows[block, (HALF - 1) * columns :], 2 * HALF + 3, state, columns)
             for signal in range(signals):
                 for lane in range(min(lanes, stop - front)):
                     piece, k = front + lane, signal * lanes + lane
@@ -86,6 +93,14 @@ def search(
             start, count, lanes, half, width, evaluate, constants, x, rows, columns, trials, summits, brackets,
             gathered, best
         )  # fmt: skip
+
+
+def narrowest(constants, lanes):
+    """Return the least width of a near-toggle about either end of pieces side by side."""
+    least = math.inf
+    for k in range(2 * lanes):
+        least = min(least, constants[k])
+    return least
 
 
 def hidden_height(rows, at, columns, k):

@@ -7,16 +7,17 @@ import pytest
 import xarray as xr
 
 import linksweep as ls
-from linksweep.engine.peaks import abreast
+from linksweep.engine.peaks import abreast, on_pieces
 from linksweep.engine.peaks.brackets import BEST_ROWS, BRACKET_ROWS, PEAK, PEAK_FAR, PEAK_X
 from linksweep.engine.peaks.evaluators import Evaluators
 from linksweep.engine.peaks.laid_out import grades
 from linksweep.engine.peaks.lanewise import Around, Lanewise
 from linksweep.engine.peaks.search import HALF, SAMPLES
+from linksweep.engine.peaks.stragglers import might_reach_between
 from linksweep.engine.trace.plan import plan
 
 PLACED = 2 * HALF + 2
-LANEWISE = {name: value for name, value in vars(abreast).items() if isinstance(value, Lanewise)}
+LANEWISE = {name: value for name, value in {**vars(abreast), **vars(on_pieces)}.items() if isinstance(value, Lanewise)}
 SPECIAL = (0.0, -0.0, 1.0, np.inf, -np.inf, np.nan)
 
 
@@ -57,6 +58,23 @@ def test_the_best_summit_and_the_next_are_those_of_a_search_one_by_one():
     np.testing.assert_array_equal(state[abreast.SUMMIT], reach.argmax(axis=0))
     np.testing.assert_allclose(state[abreast.REACH], ranked[-1], rtol=1e-15)
     np.testing.assert_allclose(state[abreast.OTHER], ranked[-2], rtol=1e-15)
+
+
+@pytest.mark.parametrize(("top", "dip"), [(0.4, 1.1), (0.5, 1.2), (0.8, 1.3), (-0.5, 3.5), (1.2, 1.8)])
+@pytest.mark.parametrize("turned", [False, True])
+def test_a_top_between_two_of_four_samples_that_rise_or_fall_is_noted(top, dip, turned):
+    """Samples of cubics at −1, 0, 1 and 2: with a top between 0 and 1 the height allowed is at least that."""
+    curve = np.polyint(np.poly([top, dip]))
+    samples = np.polyval(curve, [-1.0, 0.0, 1.0, 2.0])
+    samples = samples[::-1] if turned else samples
+    there = 0.0 < top < 1.0
+    state = np.zeros((abreast.STATE_ROWS, 8))
+    padded = np.full((2 * HALF + 3, 8), samples.min() - 1.0)
+    padded[3:7] = samples[:, None]
+    on_pieces.compare_closely(padded.ravel(), len(padded), state, 8)
+    reach = might_reach_between(*samples)
+    assert (reach >= np.polyval(curve, top)) if there else (reach == -np.inf)
+    assert reach in state[[abreast.REACH, abreast.OTHER], 0]
 
 
 def four_bars(designs: int) -> ls.Scene:

@@ -31,6 +31,8 @@ def test_a_peak_at_once_after_the_start_of_a_piece_is_found():
     [
         ("slider-crank with friction", 130_000, 5082),  # of three trials one fell far from the top
         ("four-bar with a table", 70_000, 9990),  # between the samples of a piece stood two tops of a pchip curve
+        ("four-bar with a function", 440_000, 7464),  # a trial fell 7e-7 of a bracket's width from its middle
+        ("four-bar with a function", 450_000, 5741),  # a top between four samples that fall
     ],
 )
 def test_designs_that_were_missed_are_no_more(name, part, design):
