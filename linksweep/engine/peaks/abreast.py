@@ -35,12 +35,14 @@ from linksweep.engine.peaks.brackets import (
     larger,
     place_trials,
 )
-from linksweep.engine.peaks.lanewise import around, lanewise
+from linksweep.engine.peaks.lanewise import around, copy_lanes, lanewise
 from linksweep.engine.peaks.search import GRADES, HALF, SAMPLES
 from linksweep.engine.peaks.stragglers import open_brackets, slopes_between
 
 EVALUATIONS = BEST_ROWS
 """Row of `best` after those of a refined bracket: the number of evaluations of a signal."""
+PEAK_ANGLE = PEAK_X
+"""Row of `best` that has angles from the near-toggle [degree], in place of tangents, once a search of turns is done."""
 BLOCKS = 32
 """Blocks of designs whose brackets are refined together."""
 ROOM = 4 * SAMPLES
@@ -55,21 +57,20 @@ FINAL, CONFIRMED = range(EVALUATIONS + 1, EVALUATIONS + 3)
 SUMMIT, REACH, OTHER = range(EVALUATIONS + 3, EVALUATIONS + 6)
 SAMPLED = EVALUATIONS + 6  # five samples about the summit
 PLACES = SAMPLED + 5  # the tangents at three of them
-# the half turn of the summit; the number of the signal; the tangent of a trial
-HALF_TURN, NUMBER, PLACE = range(PLACES + 3, PLACES + 6)
+HALF_TURN, NUMBER = range(PLACES + 3, PLACES + 5)  # the half turn of the summit; the number of the signal
 # vertex of the quartic through the samples, curvature there, third derivative; all steps are those between samples
-VERTEX, CURVATURE, THIRD = range(PLACES + 6, PLACES + 9)
-# trials: steps from the summit, and values
-Z_LEFT, F_LEFT, Z_RIGHT, F_RIGHT, Z_MIDDLE, F_MIDDLE, Z_LAST, F_LAST = range(PLACES + 9, PLACES + 17)
-# the rise to the parabola's vertex, and what an error of its place costs; whether that vertex is sound
-GAIN, LOSS, SOUND = range(PLACES + 17, PLACES + 20)
-# the sample before the last two
-BEFORE = PLACES + 20
-STATE_ROWS = PLACES + 21
+VERTEX, CURVATURE, THIRD = range(PLACES + 5, PLACES + 8)
+# trials: steps from the summit, tangents, and values
+Z_LEFT, X_LEFT, F_LEFT, Z_RIGHT, X_RIGHT, F_RIGHT = range(PLACES + 8, PLACES + 14)
+Z_MIDDLE, X_MIDDLE, F_MIDDLE, Z_LAST, X_LAST, F_LAST = range(PLACES + 14, PLACES + 20)
+# slope and second difference of the parabola through three trials, the rise to its vertex, what an error of its place
+# costs, and whether it is sound
+SLOPE, BEND, GAIN, LOSS, SOUND = range(PLACES + 20, PLACES + 25)
+BEFORE = PLACES + 25  # the first of the last two samples
+STATE_ROWS = PLACES + 26
 
 FIVE, THREE = tuple(range(SAMPLED, SAMPLED + 5)), tuple(range(PLACES, PLACES + 3))
 NOTHING_YET = {SUMMIT: 0.0, REACH: -math.inf, OTHER: -math.inf}
-TRIED = (Z_LEFT, F_LEFT, Z_RIGHT, F_RIGHT, Z_MIDDLE, F_MIDDLE)
 
 
 def search(
@@ -77,7 +78,7 @@ def search(
     constants, x, rows, state, brackets, gathered, best
 ):  # fmt: skip
     """Write the peaks of blocks `first` … `last` of designs to `best`: a column for each design of each signal, one
-    signal after the other, each filled up to whole blocks."""
+    signal after the other, each filled up to whole blocks. A peak's place is its angle from the near-toggle."""
     columns = state.shape[1]
     signals = columns // lanes
     width = best.shape[1] // signals
@@ -93,13 +94,14 @@ def search(
             if place_samples(own, lanes, grades, x) > 0:
                 call(share, (own, x))
             call(sample, (own, x, rows))
-            compare_sample(rows, SAMPLES, state, columns)
+            compare_samples(rows, SAMPLES, state, columns)
             for k in range(columns):
                 pick_sample(rows, x, HALF, lanes, columns, k, k % lanes, k, state)
             try_vertices(own, state, columns, lanes, evaluate)
             for signal in range(signals):
                 column, tag = signal * lanes, signal * width + block * lanes
-                keep_peaks(state, column, lanes, best, tag)
+                for row in range(EVALUATIONS + 1):
+                    copy_lanes(state, row, column, best, tag, lanes)
                 for lane in range(lanes):
                     if not smooth or state[FINAL, column + lane] == 0.0:
                         if count + 2 * HALF > brackets.shape[1]:
@@ -111,23 +113,21 @@ def search(
                             rows, x, HALF, lanes, columns, k, lane, known, False, signal, own_tag, brackets, count, best
                         )
         refine(brackets, count, lanes, width, start * lanes, constants, gathered, evaluate, best)
+        for signal in range(signals):
+            place_angles(best, signal * width + start * lanes, signal * width + stop * lanes)
 
 
 def try_vertices(constants, state, columns, lanes, evaluate):
     """Predict the peaks from five samples about summits, and settle them by trials."""
     predict_vertices(state, columns)
-    place_left(state, columns)
-    call(evaluate, (constants, state, PLACE, F_LEFT, HALF_TURN, NUMBER, 0, columns))
-    place_right(state, columns)
-    call(evaluate, (constants, state, PLACE, F_RIGHT, HALF_TURN, NUMBER, 0, columns))
+    call(evaluate, (constants, state, X_LEFT, F_LEFT, HALF_TURN, NUMBER, 0, columns))
+    call(evaluate, (constants, state, X_RIGHT, F_RIGHT, HALF_TURN, NUMBER, 0, columns))
     step_to_vertices(state, columns)
-    place_middle(state, columns)
-    call(evaluate, (constants, state, PLACE, F_MIDDLE, HALF_TURN, NUMBER, 0, columns))
+    call(evaluate, (constants, state, X_MIDDLE, F_MIDDLE, HALF_TURN, NUMBER, 0, columns))
     correct_vertices(state, columns)
-    place_last(state, columns)
     for k in range(0, columns, lanes):
         if last_trials(state, k, lanes) > 0:
-            call(evaluate, (constants, state, PLACE, F_LAST, HALF_TURN, NUMBER, k, k + lanes))
+            call(evaluate, (constants, state, X_LAST, F_LAST, HALF_TURN, NUMBER, k, k + lanes))
     settle_peaks(state, columns)
 
 
@@ -155,18 +155,20 @@ def place_samples(constants, lanes, grades, x):
 
 
 @around(NOTHING_YET)
-def compare_sample(left, value, right, number, summit, reach, other):
+def compare_samples(left, first, second, right, number, summit, reach, other):
     """Note the best summit, and the heights that it and any other summit may reach."""
-    return with_summit(summit_height(left, value, right), number, summit, reach, other)
+    height, number = summit_of(left, first, second, right, number)
+    return with_summit(height, number, summit, reach, other)
 
 
 def comparison_of_half(half):
-    """Return `compare_sample` for signals that are the same on both halves of a turn: the samples of one, and the one
-    before and the one after them, which are no summits."""
+    """Return `compare_samples` for signals that are the same on both halves of a turn: the samples of one, and the one
+    before and two after them, which are no summits."""
 
     @around(NOTHING_YET)
-    def compare(left, value, right, number, summit, reach, other):
-        height = on_half(number, half, summit_height(left, value, right))
+    def compare(left, first, second, right, number, summit, reach, other):
+        height, number = summit_of(left, first, second, right, number)
+        return with_summit(on_half(number, half, height), number + (half - 1.0), summit, reach, other)
         return with_summit(height, number + (half - 1.0), summit, reach, other)
 
     return compare
@@ -176,23 +178,31 @@ def close_comparison_of_half(half):
     """Return the same for samples that may lie too far apart: also note summits between neighbours."""
 
     @around({**NOTHING_YET, BEFORE: math.nan})
-    def compare(left, value, right, number, summit, reach, other, before):
-        between = (number < 2.0).where(-math.inf, height_between(before, left, value, right))
-        height = on_half(number, half, larger(between, summit_height(left, value, right)))
-        return *with_summit(height, number + (half - 1.0), summit, reach, other), left
+    def compare(left, first, second, right, number, summit, reach, other, before):
+        heights, noted = [summit_of(left, first, second, right, number)], (summit, reach, other)
+        for at, four in ((number, (before, left, first, second)), (number + 1.0, (left, first, second, right))):
+            heights.append(((at < 2.0).where(-math.inf, height_between(*four)), at))
+        for height, at in heights:
+            noted = with_summit(on_half(at, half, height), at + (half - 1.0), *noted)
+        return *noted, first
 
     return compare
 
 
 def on_half(number, half, height):
-    """Return a height about a sample of one half of a turn; −inf about the one before these and the one after them."""
+    """Return a height about a sample of one half of a turn; −inf about the one before these and those after them."""
     return (number < 1.0).where(-math.inf, (number > 2.0 * half + 1.0).where(-math.inf, height))
 
 
-def summit_height(left, value, right):
-    """Return the height that a summit about a sample may reach; −inf about a sample that is none."""
-    height = ((value - left) - (right - value)) + value
-    return (left < value).where((value < right).where(-math.inf, height), -math.inf)
+def summit_of(left, first, second, right, number):
+    """Return the height that a summit about one of two samples may reach, −inf if neither is one, and its number.
+
+    Two neighbours of equal height from different pairs both count: trials then settle neither.
+    """
+    rises = first < second
+    value, beside, beyond = rises.where(second, first), rises.where(first, second), rises.where(right, left)
+    height = ((value - beside) + (value - beyond)) + value
+    return (value < beyond).where(-math.inf, height), rises.where(number + 1.0, number)
 
 
 def height_between(before, left, value, right):
@@ -226,8 +236,8 @@ def pick_sample(rows, x, half, lanes, columns, column, lane, k, state):
         state[PLACES + near, k] = x[(j + near + 2 * far) * lanes + lane]
 
 
-@lanewise(FIVE, (VERTEX, CURVATURE, THIRD, Z_LEFT, Z_RIGHT))
-def predict_vertices(f0, f1, f2, f3, f4):
+@lanewise((*FIVE, *THREE), (VERTEX, CURVATURE, THIRD, Z_LEFT, X_LEFT, Z_RIGHT, X_RIGHT))
+def predict_vertices(f0, f1, f2, f3, f4, *places):
     """Predict the vertex by the quartic through five samples: two Newton steps from that of the parabola. Place trials
     about it, their distance by what the quartic corrected."""
     d1 = (f0 - f4 + 8.0 * (f3 - f1)) / 12.0
@@ -238,23 +248,21 @@ def predict_vertices(f0, f1, f2, f3, f4):
         slope = d1 + vertex * (d2 + vertex * (0.5 * d3 + vertex * d4 / 6.0))
         vertex = vertex - slope / (d2 + vertex * (d3 + 0.5 * vertex * d4))
     spread = 0.02 * abs(vertex - plain) + 5e-3
-    return vertex, d2 + vertex * (d3 + 0.5 * vertex * d4), d3, vertex - spread, vertex + spread
+    left, right = vertex - spread, vertex + spread
+    curvature = d2 + vertex * (d3 + 0.5 * vertex * d4)
+    return vertex, curvature, d3, left, place_at(left, *places), right, place_at(right, *places)
 
 
-def place_at(x1, x2, x3, step):
+def place_at(step, x1, x2, x3):
     """Return the tangent some steps from the middle one of three samples, on the parabola through them."""
     return x2 + step * (0.5 * (x3 - x1) + step * (0.5 * ((x3 - x2) - (x2 - x1))))
 
 
-place_left, place_right, place_middle, place_last = (
-    lanewise((*THREE, step), (PLACE,))(lambda *x: (place_at(*x),)) for step in (Z_LEFT, Z_RIGHT, Z_MIDDLE, Z_LAST)
-)
-
-
-@lanewise((VERTEX, CURVATURE, *TRIED[:4]), (Z_MIDDLE,))
-def step_to_vertices(vertex, curvature, left, f_left, right, f_right):
+@lanewise((VERTEX, CURVATURE, Z_LEFT, F_LEFT, Z_RIGHT, F_RIGHT, *THREE), (Z_MIDDLE, X_MIDDLE))
+def step_to_vertices(vertex, curvature, left, f_left, right, f_right, *places):
     """Place a trial by a Newton step, with the slope of the two trials and the curvature of the quartic."""
-    return (vertex - (f_right - f_left) / (right - left) / curvature,)
+    middle = vertex - (f_right - f_left) / ((right - left) * curvature)
+    return middle, place_at(middle, *places)
 
 
 def parabola(x, f, y, g, z, h):
@@ -263,8 +271,13 @@ def parabola(x, f, y, g, z, h):
     return slope, ((g - h) / (y - z) - slope) / (y - x)
 
 
-@lanewise((*TRIED, VERTEX, CURVATURE, THIRD, SOUND), (Z_LAST, F_LAST, GAIN, LOSS, SOUND))
-def correct_vertices(left, f_left, right, f_right, middle, f_middle, predicted, curvature, third, sound):
+@lanewise(
+    (Z_LEFT, F_LEFT, Z_RIGHT, F_RIGHT, Z_MIDDLE, F_MIDDLE, VERTEX, CURVATURE, THIRD, SOUND, *THREE),
+    (Z_LAST, X_LAST, F_LAST, SLOPE, BEND, GAIN, LOSS, SOUND),
+)
+def correct_vertices(
+    left, f_left, right, f_right, middle, f_middle, predicted, curvature, third, sound, *places
+):  # fmt: skip
     """Place the last trial: at the vertex of the parabola through three, where that promises more than they have."""
     slope, bend = parabola(left, f_left, right, f_right, middle, f_middle)
     vertex = middle - 0.5 * (slope + (middle - left) * bend) / bend
@@ -276,7 +289,7 @@ def correct_vertices(left, f_left, right, f_right, middle, f_middle, predicted, 
     near = larger(abs(vertex - predicted), abs(middle - predicted)) < 0.3  # else three points say little about the top
     for condition in (bend < 0.0, curvature < 0.0, abs(vertex) < 1.0, near, loss < tolerance):
         sound = condition.where(sound, 0.0)
-    return last, f_middle, gain, loss, sound
+    return last, place_at(last, *places), f_middle, slope, bend, gain, loss, sound
 
 
 def last_trials(state, column, lanes):
@@ -288,15 +301,17 @@ def last_trials(state, column, lanes):
 
 
 @lanewise(
-    (*TRIED, Z_LAST, F_LAST, *THREE, *FIVE[1:4], HALF_TURN, OTHER, THIRD, GAIN, LOSS, SOUND),
+    (
+        *(Z_LEFT, F_LEFT, Z_RIGHT, F_RIGHT, Z_MIDDLE, F_MIDDLE, Z_LAST, F_LAST, *FIVE[1:4]),
+        *(HALF_TURN, OTHER, THIRD, SLOPE, BEND, GAIN, LOSS, SOUND, *THREE),
+    ),
     (PEAK, PEAK_X, PEAK_FAR, BEYOND, EVALUATIONS, FINAL, CONFIRMED),
 )
 def settle_peaks(
-    left, f_left, right, f_right, middle, f_middle, last, f_last, x1, x2, x3, f1, f2, f3, far, other, third, gain, loss,
-    sound
+    left, f_left, right, f_right, middle, f_middle, last, f_last, f1, f2, f3, far, other, third, slope, bend, gain,
+    loss, sound, *places
 ):  # fmt: skip
     """Note the peaks, whether the trials confirm them, and whether no other summit may be higher either."""
-    slope, bend = parabola(left, f_left, right, f_right, middle, f_middle)
     to_left, to_right = middle - left, middle - right
     step = (slope + to_left * bend + third / 6.0 * to_left * to_right) / (
         2.0 * bend + third / 3.0 * (to_left + to_right)
@@ -311,16 +326,15 @@ def settle_peaks(
     best = larger(f_right, larger(f_left, best))
     floor = NOISE * larger(abs(f1), larger(abs(f2), abs(f3)))
     beyond = larger(gain + loss, floor) + tolerance
-    return best, place_at(x1, x2, x3, vertex), far, beyond, tried, final, confirmed
+    return best, place_at(vertex, *places), far, beyond, tried, final, confirmed
 
 
-def keep_peaks(state, column, lanes, best, tag):
-    """Copy the peaks of one signal, and count their samples."""
-    for row in range(len(best)):
-        for lane in range(lanes):
-            best[row, tag + lane] = state[row, column + lane]
-    for lane in range(lanes):
-        best[EVALUATIONS, tag + lane] += SAMPLES
+@lanewise((PEAK, PEAK_X, PEAK_FAR, EVALUATIONS), (PEAK_ANGLE, EVALUATIONS))
+def place_angles(peak, tangent, far, trials):
+    """Replace the tangents of peaks by their angles from the near-toggle, from 0 to 360, and count the samples."""
+    angle = math.degrees(2.0) * tangent.atan2(1.0) + 180.0 * far
+    angle = (angle < 0.0).where(angle + 360.0, angle)
+    return (-math.inf < peak).where(angle, math.nan), trials + SAMPLES
 
 
 def refine(brackets, count, lanes, width, start, constants, gathered, evaluate, best):

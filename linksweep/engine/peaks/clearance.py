@@ -31,7 +31,7 @@ def measure_clearances(
         if place_samples(own, lanes, grades, x) > 0:
             call(share, (own, x))
         call(sample, (own, x, rows))
-        measure_sample(rows, SAMPLES, table, columns)
+        measure_samples(rows, SAMPLES, table, columns)
         for signal in range(signals):
             for row in range(CLEARANCE_ROWS):
                 for lane in range(lanes):
@@ -39,8 +39,13 @@ def measure_clearances(
 
 
 @around({LEAST: math.inf, DIP: math.inf})
-def measure_sample(left, value, right, number, least, dip):
-    """Note a sample that is the least, and one that lies nearer to zero than its neighbours on the same side."""
+def measure_samples(left, first, second, right, number, least, dip):
+    """Note the least sample, and the lowest that lies nearer to zero than its neighbours on the same side."""
+    return measured(first, second, right, *measured(left, first, second, least, dip))
+
+
+def measured(left, value, right, least, dip):
+    """Return the least sample and dip, with one more."""
     known = (value > -math.inf).where(value, -math.inf)  # a NaN is not greater
     side = (value < 0.0).where(-1.0, 1.0)
     before, here, after = side * left, side * value, side * right

@@ -5,17 +5,23 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Callable, Mapping
 from functools import cache
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
+from linksweep.engine.blocks import block as new_block
 from linksweep.engine.kernel.machine_code import INTEGER, INTEGERS, ROW, TABLE, MachineCode
 from linksweep.engine.kernel.translate import translated
 from linksweep.engine.peaks import abreast, brackets, clearance, on_pieces, search, zeros
+from linksweep.engine.peaks.abreast import EVALUATIONS, PEAK_ANGLE
 from linksweep.engine.peaks.brackets import (
     BEST_ROWS,
+    BEYOND,
     BRACKET_ROWS,
     F1,
+    PEAK,
+    PEAK_FAR,
+    PEAK_X,
     ROUNDS,
     TAG,
     TRIALS,
@@ -35,19 +41,34 @@ PIECES_TOGETHER = 256
 DESIGNS_PER_THREAD = 1000
 """Designs that pay for another thread."""
 
+Result = TypeVar("Result", "Peak", "PeakOfPiece")
+
 Values = Callable[[np.ndarray, np.ndarray], np.ndarray]
 """A function of tags and places that returns the values of the tagged signals there."""
 
 
 class Peak(NamedTuple):
-    """The peak of a signal: its largest value, its place (half-angle tangent and half turn), a bound on how much higher
-    it might be, and the number of evaluations."""
+    """The peak of a signal: its largest value, its angle from the near-toggle [degree], a bound on how much higher it
+    might be, and the number of evaluations."""
+
+    value: Field
+    angle: Field
+    beyond: Field
+    evaluations: Field
+
+
+class PeakOfPiece(NamedTuple):
+    """The same of a signal on a piece, with its place there: half-angle tangent, and 0 or 1 for start or end."""
 
     value: Field
     tangent: Field
-    far: Field
+    end: Field
     beyond: Field
     evaluations: Field
+
+
+ROWS = {Peak: (PEAK, PEAK_ANGLE, BEYOND, EVALUATIONS), PeakOfPiece: (PEAK, PEAK_X, PEAK_FAR, BEYOND, EVALUATIONS)}
+"""Rows of `best` in the order of the fields."""
 
 
 OF_DESIGNS = (INTEGERS, ROW, INTEGERS, TABLE, INTEGER, INTEGER, INTEGER, INTEGER, TABLE, ROW, ROW)
@@ -100,7 +121,7 @@ def _peaks(plan: Plan, designs: LaidOut, smooth: bool, threads: int | None) -> d
     signals, lanes, blocks = designs.signals, designs.lanes, designs.blocks
     run: Callable = compiled_search() if designs.compiled else abreast.search
     columns = lanes * len(signals)
-    best = np.empty((BEST_ROWS + 1, columns * blocks))  # a column for each design of each signal, in whole blocks
+    best = new_block(BEST_ROWS + 1, columns * blocks)  # a column for each design of each signal, in whole blocks
 
     def work(first: int, last: int) -> None:
         run(
@@ -110,7 +131,7 @@ def _peaks(plan: Plan, designs: LaidOut, smooth: bool, threads: int | None) -> d
 
     with np.errstate(all="ignore"):
         over_threads(work, blocks, 1 + designs.designs // DESIGNS_PER_THREAD, threads)
-    return _of_designs(designs, best, plan.loops)
+    return _of_designs(Peak, designs, best, plan.loops)
 
 
 def find_peaks_on_pieces(
@@ -121,19 +142,19 @@ def find_peaks_on_pieces(
     owners: np.ndarray,
     half: int,
     threads: int | None,
-) -> dict[str, Peak]:
+) -> dict[str, PeakOfPiece]:
     """Return the largest value of each signal on every piece, or a sample of it where another piece of the same design
     has a larger one.
 
     Pieces lie along `dim`; `owners` are their designs, in order; `half` is how many samples there are on either side of
     the middle of each half turn that follows a piece.
     """
-    peaks: dict[str, Peak] = {}
+    peaks: dict[str, PeakOfPiece] = {}
     for first in range(0, len(signals), SIGNALS_AT_ONCE):
         request = plan.only((*signals[first : first + SIGNALS_AT_ONCE], *WIDTHS))
         pieces = laid_out(request, inputs, {dim: len(owners)}, half)
         best = _best_on_pieces(pieces, owners.astype(np.int64), threads)
-        peaks |= _of_designs(pieces, best, request.loops)
+        peaks |= _of_designs(PeakOfPiece, pieces, best, request.loops)
     return peaks
 
 
@@ -154,15 +175,12 @@ def _best_on_pieces(pieces: LaidOut, owners: np.ndarray, threads: int | None) ->
     return best
 
 
-def _of_designs(designs: LaidOut, best: np.ndarray, dims: tuple[str, ...]) -> dict[str, Peak]:
+def _of_designs(kind: type[Result], designs: LaidOut, best: np.ndarray, dims: tuple[str, ...]) -> dict[str, Result]:
     """Return the results of designs, whose columns may fill whole blocks."""
     signals = designs.signals
     stored = best.reshape(len(best), len(signals), -1)[..., : designs.designs]
     stored = stored.reshape(*stored.shape[:2], *designs.shape)
-    return {
-        signal: Peak(*(Field(dims, stored[row, k, ...]) for row in range(len(stored))))
-        for k, signal in enumerate(signals)
-    }
+    return {signal: kind(*(Field(dims, stored[row, k, ...]) for row in ROWS[kind])) for k, signal in enumerate(signals)}
 
 
 def zeros_of_pieces(plan: Plan, inputs: Fields, sizes: Sizes, threads: int | None) -> np.ndarray:

@@ -13,6 +13,7 @@ import numpy as np
 from linksweep.engine.kernel.instructions import REGISTER as LANES
 from linksweep.engine.kernel.instructions import Instructions
 from linksweep.engine.kernel.machine_code import INTEGER, ROW, TABLE, MachineCode, machine_code
+from linksweep.engine.kernel.translate import written_by
 from linksweep.engine.trace.graph import Graph, Node
 from linksweep.engine.trace.operators import OPERATORS, interpret
 
@@ -27,7 +28,8 @@ ABREAST = 3
 class Lanewise:
     """A function without branches, from rows of a table to rows of it; a column is a lane.
 
-    Called, it is interpreted by numpy; `compiled` is the same on a table whose columns fill vectors.
+    Called with a table and the bounds of a range of its columns, it is interpreted by numpy; `compiled` is the same of
+    the first columns, which fill vectors.
     """
 
     def __init__(self, function: Callable[..., tuple[Node, ...]], inputs: tuple[int, ...], outputs: tuple[int, ...]):
@@ -53,11 +55,12 @@ class Lanewise:
     def results(self) -> list[Node]:
         return self.traced[1]
 
-    def __call__(self, table: np.ndarray, columns: int) -> None:
-        inputs = (table[row, :columns].copy() for row in self.rows)
+    def __call__(self, table: np.ndarray, *bounds: int) -> None:
+        columns = slice(*bounds)
+        inputs = (table[row, columns].copy() for row in self.rows)
         values = interpret(self.nodes, dict(zip(self.inputs, inputs, strict=True)))
         for row, node in zip(self.outputs, self.results, strict=True):
-            table[row, :columns] = values[node]
+            table[row, columns] = values[node]
 
     def compiled(self) -> MachineCode:
         """Return the function of a table and the number of its first columns that count as machine code."""
@@ -70,66 +73,69 @@ class Lanewise:
         lines = [(node.operator, node.value, [place[x] for x in node.operands]) for node in self.nodes]
         return f"{SOURCE} {self.rows} {self.outputs} {lines} {[place[node] for node in self.results]}"
 
-    def emit(self, builder: Any, table: Any, columns: Any) -> None:
+    def emit(self, builder: Any, table: Any, *bounds: Any) -> None:
         vectors = Instructions(builder)
-        with vectors.loop(vectors.integer(0), columns, LANES) as (k, _):
-            loaded = [vectors.load(table.data, place) for place in _places(vectors, table, self.rows, k)]
+        first, last = (vectors.integer(0), *bounds)[-2:]
+        with vectors.loop(first, last, LANES) as (k, _):
+            loaded = [vectors.load(table.data, _place(vectors, table, row, k)) for row in self.rows]
             values = interpret(self.nodes, dict(zip(self.inputs, loaded, strict=True)), vectors.operators)
             self._store(vectors, table, k, [values[node] for node in self.results])
 
     def _store(self, vectors: Instructions, table: Any, k: Any, values: list[Any]) -> None:
-        for place, value in zip(_places(vectors, table, self.outputs, k), values, strict=True):
-            vectors.store(value, table.data, place)
+        for row, value in zip(self.outputs, values, strict=True):
+            vectors.store(value, table.data, _place(vectors, table, row, k))
 
 
-def _places(vectors: Instructions, table: Any, rows: tuple[int, ...], k: Any) -> list[Any]:
-    """Return the positions of a column in rows of a table."""
-    builder = vectors.builder
-    return [builder.add(builder.mul(table.shape[1], vectors.integer(row)), k) for row in rows]
+def _place(vectors: Instructions, table: Any, row: int | Any, column: Any) -> Any:
+    """Return the position of a column in a row of a table."""
+    row = vectors.integer(row) if isinstance(row, int) else row
+    return vectors.builder.add(vectors.builder.mul(table.shape[1], row), column)
+
+
+def _write_copy(vectors: Instructions, table: Any, row: Any, column: Any, other: Any, place: Any, _lanes: Any) -> None:
+    lanes = vectors.load(table.data, _place(vectors, table, row, column))
+    vectors.store(lanes, other.data, _place(vectors, other, row, place))
+
+
+@written_by(_write_copy)
+def copy_lanes(table, row, column, other, place, lanes):
+    """Copy lanes of a row of a table to the same row of another one."""
+    other[row, place : place + lanes] = table[row, column : column + lanes]
 
 
 class Around(Lanewise):
-    """A function of each sample around a turn: of its neighbour before, itself, the one after, its number, and of rows
-    of a table that it updates from their `start` on.
+    """A function of every two samples around a turn: of the one before them, both, the one after, the number of the
+    first, and of rows of a table that it updates from their `start` on.
 
-    Called with the samples (row after row of lanes), their number, the table and the number of its columns.
+    Called with the samples (row after row of lanes), their even number, the table and the number of its columns.
     """
 
     def __init__(self, function: Callable[..., tuple[Node, ...]], start: dict[int, float]):
-        super().__init__(function, (-4, -3, -2, -1, *start), tuple(start))
+        super().__init__(function, (-5, -4, -3, -2, -1, *start), tuple(start))
         self.start = tuple(start.values())
 
     @cached_property
     def of_samples(self) -> list[Node]:
         """The nodes that depend on samples alone."""
-        known = set(self.inputs[:4])
+        known = set(self.inputs[:5])
         for node in self.nodes:
             known.update({node} if known.issuperset(node.operands) else ())
         return [node for node in self.nodes if node in known]
 
-    @cached_property
-    def ahead(self) -> dict[Node, Node]:
-        """The nodes that are those of the sample before, by what they will be at the next one."""
-        graph, ahead = self.inputs[0].graph, dict(zip(self.inputs[:2], self.inputs[1:3], strict=True))
-        for node in self.of_samples:
-            if node.operands and ahead.keys() >= set(node.operands):
-                later = graph.find(node.operator, *(ahead[x] for x in node.operands))
-                ahead |= {node: later} if later else {}
-        return ahead
-
     def __call__(self, samples: np.ndarray, count: int, table: np.ndarray, columns: int) -> None:  # type: ignore[override]
-        row = samples[: count * columns].reshape(count, columns)
-        around = np.roll(row, 1, axis=0), row, np.roll(row, -1, axis=0), np.arange(count, dtype=float)[:, None]
+        first, second = samples[: count * columns].reshape(-1, 2, columns).swapaxes(0, 1)
+        number = np.arange(0.0, count, 2.0)[:, None]
+        around = np.roll(second, 1, axis=0), first, second, np.roll(first, -1, axis=0), number
         every = interpret(self.of_samples, dict(zip(self.inputs, around, strict=False)))
         now: tuple[Any, ...] = self.start
         running = [(OPERATORS[node.operator], node) for node in self.nodes if node not in every]
         used = {x for _, node in running for x in node.operands if x in every}
-        samplewise = {node: np.broadcast_to(every[node], row.shape) for node in used}
+        samplewise = {node: np.broadcast_to(every[node], first.shape) for node in used}
         values: Values = {}
         with np.errstate(all="ignore"):
-            for j in range(count):
+            for j in range(count // 2):
                 values.update({node: value[j] for node, value in samplewise.items()})
-                values.update(zip(self.inputs[4:], now, strict=True))
+                values.update(zip(self.inputs[5:], now, strict=True))
                 for function, node in running:
                     values[node] = function(*[values[x] for x in node.operands])
                 now = tuple(values[node] for node in self.results)
@@ -145,34 +151,31 @@ class Around(Lanewise):
 
     def emit(self, builder: Any, samples: Any, count: Any, table: Any, columns: Any) -> None:  # type: ignore[override]
         vectors = Instructions(builder)
-        none, one = vectors.integer(0), vectors.integer(1)
+        none, one, two = (vectors.integer(k) for k in range(3))
         last, latest = builder.sub(count, one), builder.sub(columns, vectors.integer(LANES))
         start = [vectors.wide(vectors.double(number)) for number in self.start]
+        carried = [*self.inputs[:2], *self.inputs[5:]]
 
         def sample(j: Any, k: Any) -> Any:
             return vectors.load(samples.data, builder.add(builder.mul(columns, j), k))
 
-        def first_values(k: Any) -> Values:
-            values = dict(zip(self.inputs, (sample(last, k), sample(none, k)), strict=False))
-            interpret([node for node in self.ahead if node.operands], values, vectors.operators)
-            return values | dict(zip(self.inputs[4:], start, strict=True))
-
         with vectors.loop(none, columns, ABREAST * LANES) as (first, _):
             blocks = [builder.add(first, vectors.integer(k * LANES)) for k in range(ABREAST)]
             blocks = [builder.select(builder.icmp_signed("<", k, latest), k, latest) for k in blocks]
-            running = [{node: vectors.slot(value) for node, value in first_values(k).items()} for k in blocks]
-            with vectors.loop(none, count) as (j, _):
-                following = builder.select(builder.icmp_signed("==", j, last), none, builder.add(j, one))
+            running = [[*map(vectors.slot, (sample(last, k), sample(none, k), *start))] for k in blocks]
+            with vectors.loop(none, count, 2) as (j, _):
+                second, after = builder.add(j, one), builder.add(j, two)
+                after = builder.select(builder.icmp_signed("<", after, count), after, none)
                 number = builder.sitofp(j, vectors.double)
                 for k, cells in zip(blocks, running, strict=True):
-                    values = {node: builder.load(cell) for node, cell in cells.items()}
-                    values |= dict(zip(self.inputs[2:4], (sample(following, k), number), strict=True))
-                    interpret([node for node in self.nodes if node not in cells], values, vectors.operators)
-                    now = self.ahead | dict(zip(self.inputs[4:], self.results, strict=True))
-                    for node, cell in cells.items():
-                        builder.store(values[now[node]], cell)
+                    values = dict(zip(carried, map(builder.load, cells), strict=True))
+                    new = sample(second, k), sample(after, k)
+                    values |= dict(zip(self.inputs[2:5], (*new, number), strict=True))
+                    interpret(self.nodes, values, vectors.operators)
+                    for value, cell in zip((*new, *(values[node] for node in self.results)), cells, strict=True):
+                        builder.store(value, cell)
             for k, cells in zip(blocks, running, strict=True):
-                self._store(vectors, table, k, [builder.load(cells[node]) for node in self.inputs[4:]])
+                self._store(vectors, table, k, [*map(builder.load, cells[2:])])
 
 
 def lanewise(inputs: tuple[int, ...], outputs: tuple[int, ...]) -> Callable[[Callable[..., Any]], Lanewise]:
@@ -181,6 +184,6 @@ def lanewise(inputs: tuple[int, ...], outputs: tuple[int, ...]) -> Callable[[Cal
 
 
 def around(start: dict[int, float]) -> Callable[[Callable[..., Any]], Around]:
-    """Decorate a function of a sample, its neighbours and its number, and of rows of a table that it updates from these
-    values on."""
+    """Decorate a function of two samples, their neighbours and their number, and of rows of a table that it updates
+    from these values on."""
     return lambda function: Around(function, start)

@@ -41,7 +41,7 @@ next ones. About the end of a piece signals are even, and a quartic rises by 1/4
 NARROW = 0.5
 """Width of a near-toggle below which samples may lie too far apart to show every summit."""
 
-compare_sample_of_half, compare_sample_of_few = (comparison_of_half(half) for half in (HALF, FEW))
+compare_samples_of_half, compare_samples_of_few = (comparison_of_half(half) for half in (HALF, FEW))
 compare_closely = close_comparison_of_half(HALF)
 
 
@@ -69,11 +69,11 @@ def search(
                 call(share, (constants[block], x[block]))
             call(sample, (constants[block], x[block], rows[block]))
             if half == FEW:
-                compare_sample_of_few(rows[block, (FEW - 1) * columns :], 2 * FEW + 3, state, columns)
+                compare_samples_of_few(rows[block, (FEW - 1) * columns :], 2 * FEW + 4, state, columns)
             elif narrowest(constants[block], lanes) < NARROW:
-                compare_closely(rows[block, (HALF - 1) * columns :], 2 * HALF + 3, state, columns)
+                compare_closely(rows[block, (HALF - 1) * columns :], 2 * HALF + 4, state, columns)
             else:
-                compare_sample_of_half(rows[block, (HALF - 1) * columns :], 2 * HALF + 3, state, columns)
+                compare_samples_of_half(rows[block, (HALF - 1) * columns :], 2 * HALF + 4, state, columns)
             for signal in range(signals):
                 for lane in range(min(lanes, stop - front)):
                     piece, k = front + lane, signal * lanes + lane

@@ -41,23 +41,25 @@ def open_brackets(rows, x, half, lanes, columns, k, lane, known, even, signal, t
     left, value = sample_of(rows, first - 1, samples, columns, k), sample_of(rows, first, samples, columns, k)
     for j in range(first, last + 1):
         right = sample_of(rows, j + 1, samples, columns, k)
-        floor = noise(left, value, right)
-        least = top + (RISE * abs(top) if confirmed else 10.0 * floor)
-        summit = left < value and value >= right and might_reach(left, value, right, 1.0) > least
-        between = even and j > first and might_reach_between(before, left, value, right) > least
-        if j != known and (summit or between):
-            far = j // (2 * half)
-            at = (j + 2 * far) * lanes + lane
-            brackets[XA, count], brackets[XB, count], brackets[XC, count] = x[at], x[at + lanes], x[at + 2 * lanes]
-            brackets[FA, count], brackets[FB, count], brackets[FC, count] = left, value, right
-            if between:
-                brackets[XB, count], brackets[FB, count] = 0.5 * (x[at] + x[at + lanes]), -math.inf
-                brackets[XC, count], brackets[FC, count] = x[at + lanes], value
-            brackets[FAR, count], brackets[SIGNAL, count] = float(far), float(signal)
-            brackets[TAG, count], brackets[FLOOR, count] = tag, floor
-            width = brackets[XC, count] - brackets[XA, count]
-            brackets[WIDTH, count], brackets[FIRST_WIDTH, count] = 4.0 * width, width  # 4.0: not counted as slow
-            count += 1
+        stands = left < value and value >= right
+        if j != known and (even or stands):
+            floor = noise(left, value, right)
+            least = top + (RISE * abs(top) if confirmed else 10.0 * floor)
+            summit = stands and might_reach(left, value, right, 1.0) > least
+            between = even and j > first and might_reach_between(before, left, value, right) > least
+            if summit or between:
+                far = j // (2 * half)
+                at = (j + 2 * far) * lanes + lane
+                brackets[XA, count], brackets[XB, count], brackets[XC, count] = x[at], x[at + lanes], x[at + 2 * lanes]
+                brackets[FA, count], brackets[FB, count], brackets[FC, count] = left, value, right
+                if between:
+                    brackets[XB, count], brackets[FB, count] = 0.5 * (x[at] + x[at + lanes]), -math.inf
+                    brackets[XC, count], brackets[FC, count] = x[at + lanes], value
+                brackets[FAR, count], brackets[SIGNAL, count] = float(far), float(signal)
+                brackets[TAG, count], brackets[FLOOR, count] = tag, floor
+                width = brackets[XC, count] - brackets[XA, count]
+                brackets[WIDTH, count], brackets[FIRST_WIDTH, count] = 4.0 * width, width  # 4.0: not counted as slow
+                count += 1
         before, left, value = left, value, right
     return count
 
@@ -92,5 +94,6 @@ def slopes_between(before, left, value, right):
 
 def sample_of(rows, j, samples, columns, k):
     """Return a sample of one signal and lane, around the turn; −inf where there is no value."""
-    value = rows[(j + samples) % samples * columns + k]
+    around = samples if j < 0 else -samples if j >= samples else 0
+    value = rows[(j + around) * columns + k]
     return value if value == value else -math.inf

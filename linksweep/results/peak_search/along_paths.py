@@ -58,9 +58,15 @@ def with_unknown_bound(peak: SignalPeak) -> SignalPeak:
 
 def angle_in_period(angle: Array, period: float) -> Array:
     """Return the angles of peaks in [0, period); one within rounding of the period becomes 0."""
-    folded = in_period(angle, period)
-    folded[folded >= period - NEAR_PERIOD] = 0.0
-    return folded
+    return start_near_period(in_period(angle, period), period)
+
+
+def start_near_period(angle: Array, period: float) -> Array:
+    """Return the angles of peaks, changed in place: one within rounding of the period becomes 0."""
+    near = angle >= period - NEAR_PERIOD
+    if near.any():
+        angle[near] = 0.0
+    return angle
 
 
 def put(peak: SignalPeak, group: Any, numbers: tuple[Array, ...]) -> None:

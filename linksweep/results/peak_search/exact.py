@@ -12,9 +12,7 @@ A peak is a value of the signal at some angle, so that it exceeds the true one b
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from functools import partial
-from itertools import groupby
 from typing import Any
 
 import numpy as np
@@ -34,6 +32,7 @@ from linksweep.results.peak_search.along_paths import (
     nothing,
     put,
     raise_to_poles,
+    start_near_period,
     with_unknown_bound,
 )
 from linksweep.results.peak_search.approaches import with_narrow_approaches
@@ -54,14 +53,11 @@ from linksweep.results.peak_search.pieces import (
 from linksweep.results.peak_search.poles import designs_with_candidates, may_have_poles
 from linksweep.scene.dimensions import aligned
 from linksweep.scene.grid import NAMES as GRID_ROWS
-from linksweep.scene.pairs import Array, changes
+from linksweep.scene.pairs import Array, changes, in_period
 from linksweep.scene.scene import Scene
 
 WINDOWS_AT_ONCE = 4096
 """Designs whose windows are searched together: a window has few samples, so there can be more than of whole turns."""
-
-NUMBERS_AT_ONCE = 8192
-"""Numbers whose angles are computed together, several signals of few designs."""
 
 
 def exact_peaks(
@@ -203,9 +199,8 @@ def _fused(
         request, inputs_of_group = group.one_by_one(scene.table.between_samples, names, rows, {}, places)
         results = find_peaks(request, signals, inputs_of_group, {ONE: len(rows)}, smooth, threads)
         for signal, peak in results.items():
-            value, tangent, far, bound, samples = (field.values for field in peak)
-            angle = angle_in_period(_away(tangent, far) + middle, scene.period)
-            put(peaks[signal], group, (value, np.where(np.isnan(value), np.nan, angle), bound, samples))
+            value, angle, bound, samples = (field.values for field in peak)
+            put(peaks[signal], group, (value, angle_in_period(angle + middle, scene.period), bound, samples))
     return peaks
 
 
@@ -238,40 +233,19 @@ def _constants(scene: Scene, signals: tuple[str, ...], designs: Array) -> dict[s
     return peaks_where(Field(tuple(sizes), good.reshape(tuple(sizes.values()))), peaks) if peaks else {}
 
 
-def _away(tangent: Array, far: Array) -> Array:
-    """Return the angles of peaks from the near-toggle [degree]."""
-    return 2.0 * np.degrees(np.arctan(tangent)) + 180.0 * far
-
-
 def _at_angles(scene: Scene, peaks: dict[str, Peak]) -> dict[str, SignalPeak]:
-    """Return peaks of the fused search, which knows half-angle tangents, with their angles [degree].
+    """Return peaks of the fused search, whose angles are those from the near-toggle, with their angles from x.
 
     A signal may depend on the crank's angle from the frame alone; its angle from x has the dims of the frame's, too.
     """
     middle, results = scene.mechanism.near_toggle_angle, {}
     if hasattr(middle, "dims"):
         peaks = {signal: _over_dims_of(middle, peak, scene.inputs.sizes) for signal, peak in peaks.items()}
-    for signals in _side_by_side(peaks):
-        dims, some = peaks[signals[0]].value.dims, [peaks[signal] for signal in signals]
-        value, tangent, far = (_stacked([peak[k].values for peak in some]) for k in range(3))
-        angle = angle_in_period(_away(tangent, far) + aligned(middle, dims), scene.period)
-        angle = np.where(np.isnan(value), np.nan, angle)
-        for k, (signal, peak) in enumerate(zip(signals, some, strict=True)):
-            results[signal] = SignalPeak(peak.value, Field(dims, angle[k, ...]), peak.beyond, peak.evaluations)
+    turned = hasattr(middle, "dims") or middle != 0.0
+    for signal, (value, (dims, angle), bound, samples) in peaks.items():
+        angle = in_period(angle + aligned(middle, dims), scene.period) if turned else angle
+        results[signal] = SignalPeak(value, Field(dims, start_near_period(angle, scene.period)), bound, samples)
     return results
-
-
-def _side_by_side(peaks: dict[str, Peak]) -> Iterator[list[str]]:
-    """Yield signals that have the same dims: several of few designs, as long as their numbers stay in the cache."""
-    for _, same in groupby(peaks, lambda signal: peaks[signal].value.dims):
-        signals = [*same]
-        step = max(1, NUMBERS_AT_ONCE // max(1, peaks[signals[0]].value.values.size))
-        yield from (signals[k : k + step] for k in range(0, len(signals), step))
-
-
-def _stacked(arrays: list[Array]) -> Array:
-    """Return arrays along a new first axis, a single one uncopied."""
-    return np.stack(arrays) if len(arrays) > 1 else arrays[0][None]
 
 
 def _over_dims_of(middle: Any, peak: Peak, sizes: Sizes) -> Peak:

@@ -8,7 +8,7 @@ import xarray as xr
 
 import linksweep as ls
 from linksweep.engine.peaks import abreast, on_pieces
-from linksweep.engine.peaks.brackets import BEST_ROWS, BRACKET_ROWS, PEAK, PEAK_FAR, PEAK_X
+from linksweep.engine.peaks.brackets import BEST_ROWS, BRACKET_ROWS, PEAK
 from linksweep.engine.peaks.evaluators import Evaluators
 from linksweep.engine.peaks.laid_out import grades
 from linksweep.engine.peaks.lanewise import Around, Lanewise
@@ -51,7 +51,7 @@ def test_the_best_summit_and_the_next_are_those_of_a_search_one_by_one():
     """Against a plain loop over the samples of each signal."""
     columns, state = 8, np.zeros((abreast.STATE_ROWS, 8))
     rows = np.random.default_rng(1).normal(size=(SAMPLES, columns))
-    abreast.compare_sample(rows.ravel(), SAMPLES, state, columns)
+    abreast.compare_samples(rows.ravel(), SAMPLES, state, columns)
     before, after = np.roll(rows, 1, axis=0), np.roll(rows, -1, axis=0)
     reach = np.where((before < rows) & (after <= rows), 3.0 * rows - before - after, -np.inf)
     ranked = np.sort(reach, axis=0)
@@ -67,14 +67,16 @@ def test_a_top_between_two_of_four_samples_that_rise_or_fall_is_noted(top, dip, 
     curve = np.polyint(np.poly([top, dip]))
     samples = np.polyval(curve, [-1.0, 0.0, 1.0, 2.0])
     samples = samples[::-1] if turned else samples
-    there = 0.0 < top < 1.0
-    state = np.zeros((abreast.STATE_ROWS, 8))
-    padded = np.full((2 * HALF + 3, 8), samples.min() - 1.0)
-    padded[3:7] = samples[:, None]
-    on_pieces.compare_closely(padded.ravel(), len(padded), state, 8)
     reach = might_reach_between(*samples)
-    assert (reach >= np.polyval(curve, top)) if there else (reach == -np.inf)
-    assert reach in state[[abreast.REACH, abreast.OTHER], 0]
+    assert (reach >= np.polyval(curve, top)) if 0.0 < top < 1.0 else (reach == -np.inf)
+    table = np.append(samples, 0.0)[:, None]
+    Lanewise(lambda *four: (abreast.height_between(*four),), (0, 1, 2, 3), (4,))(table, 1)
+    assert table[4] == reach
+    for before in (3, 4):  # the samples are compared two by two
+        state, padded = np.zeros((abreast.STATE_ROWS, 1)), np.full((2 * HALF + 4, 1), samples.min() - 1.0)
+        padded[before : before + 4, 0] = samples
+        on_pieces.compare_closely(padded.ravel(), len(padded), state, 1)
+        assert reach in [*state[[abreast.REACH, abreast.OTHER], 0], -np.inf]
 
 
 def four_bars(designs: int) -> ls.Scene:
@@ -199,6 +201,5 @@ def test_of_three_summits_nearly_as_high_the_highest_is_the_peak():
             sample, evaluate, np.zeros((abreast.BLOCKS, 3)), np.zeros(2 * PLACED), np.zeros(SAMPLES + 1),
             np.zeros((abreast.STATE_ROWS, 1)), np.zeros((BRACKET_ROWS, abreast.ROOM)), np.zeros(3), best,
         )  # fmt: skip
-    places = 2.0 * np.arctan(best[PEAK_X]) + np.pi * best[PEAK_FAR]
     np.testing.assert_allclose(best[PEAK], 6.0 + little, rtol=2e-11)
-    np.testing.assert_allclose(np.cos(places - phase), 1.0, atol=1e-9)
+    np.testing.assert_allclose(np.cos(np.radians(best[abreast.PEAK_ANGLE]) - phase), 1.0, atol=1e-9)
