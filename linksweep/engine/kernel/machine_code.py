@@ -126,7 +126,9 @@ def _optimised(target: Any, emit: Callable[..., Any], name: str, kinds: tuple[st
     new_function(written := ir.Module(), emit, name, kinds)
     module = binding.parse_assembly(str(written))
     module.verify()
-    passes = binding.create_pass_builder(target, binding.create_pipeline_tuning_options(speed_level=2))
+    tuning = binding.create_pipeline_tuning_options(speed_level=2)
+    tuning.loop_unrolling = False  # elimination took twice as long to compile unrolled, and as long or longer to run
+    passes = binding.create_pass_builder(target, tuning)
     passes.getModulePassManager().run(module, passes)
     return module
 
