@@ -278,9 +278,9 @@ def converted_fields(owner: Any) -> dict[str, Any]:
     """Return those fields of a dataclass that change when its numbers become float64 in the units of their kinds, and
     the mark that `is_plain` looks for."""
     changed, plain = {}, True
-    for name, kind, _ in declared(owner):
+    for name, kind, default in declared(owner):
         value = getattr(owner, name)
-        if not kind.sound(value):
+        if not (kind.sound(value) or value is default is None):
             plain = False
             if (new := kind.converted(value)) is not value:
                 changed[name] = new
@@ -288,7 +288,8 @@ def converted_fields(owner: Any) -> dict[str, Any]:
 
 
 def is_plain(owner: Any) -> bool:
-    """Return whether all fields of a dataclass were plain and sound when it was made: no arrays, and no problems."""
+    """Return whether all fields of a dataclass were plain and sound when it was made, or left out: no arrays, and no
+    problems."""
     return PLAIN_MARK in vars(owner)
 
 

@@ -2,8 +2,10 @@
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import linksweep as ls
+from linksweep.base.fields import is_plain
 
 DENSITY, THICKNESS = 7800.0, 0.013
 
@@ -41,3 +43,10 @@ def test_an_eccentric_disk_turns_about_its_pin_as_its_parts_do():
     at_rest = ls.sweep(ls.Scene(machine, omega2=0.0, gravity=(0.0, -9.81)), theta2=[0.0, 40.0], of=["T12"])
     lever = 0.03 * np.cos(np.radians([50.0, 90.0]))
     np.testing.assert_allclose(at_rest.T12, mass * 9.81 * lever, rtol=1e-4, atol=1e-12)
+
+
+def test_a_link_whose_section_is_left_out_counts_as_plain_numbers():
+    masses = xr.DataArray([1.0, 2.0], dims="mass")
+    assert is_plain(ls.Link(0.2, 1.0, 0.003))
+    assert not is_plain(ls.Link(0.2, masses, 0.003))
+    assert not is_plain(ls.Link(0.2, 1.0, 0.003, section=ls.Section(area=4e-4, modulus=1.3e-6)))
