@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import cache
-from importlib.metadata import PackageNotFoundError, version
 
 UNKNOWN = "0+unknown"
 """The version of a copy that was never installed."""
@@ -12,6 +11,8 @@ UNKNOWN = "0+unknown"
 @cache
 def installed_version() -> str:
     """Return the version of the installed package."""
+    from importlib.metadata import PackageNotFoundError, version  # here: it takes as long as all else that is imported
+
     try:
         return version("linksweep")
     except PackageNotFoundError:
