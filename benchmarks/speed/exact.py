@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from functools import partial
@@ -14,6 +12,7 @@ import xarray as xr
 import linksweep as ls
 from benchmarks.cases import ALL, GENERAL, LENGTHS, Size, batch, few, scene
 from benchmarks.rivals import peers
+from benchmarks.speed import fresh
 from benchmarks.speed.kernel import kernel_of, way
 from benchmarks.timing import FASTER, SHARE, Race, Row, race
 
@@ -214,5 +213,4 @@ def _memory(name: str, call: str, size: Size, goal: float) -> Row:
     """Measure the largest memory of a fresh process that computes a million designs [GB]."""
     designs = 1000 * size.designs
     code = IN_ALL.format(call=call.format(designs=designs))
-    made = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    return Row(f"{name} of {designs:,} designs", "", "GB in all", float(made.stdout), goal=goal)
+    return Row(f"{name} of {designs:,} designs", "", "GB in all", float(fresh.python("-c", code)), goal=goal)

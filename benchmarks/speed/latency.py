@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import os
-import subprocess
-import sys
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -17,7 +15,7 @@ import xarray as xr
 import linksweep as ls
 from benchmarks.cases import GENERAL, NINE, Size, scene, stacked
 from benchmarks.rivals import peers
-from benchmarks.speed import peaks
+from benchmarks.speed import fresh, peaks
 from benchmarks.speed.kernel import kernel_of, way
 from benchmarks.timing import WALL, Race, Row, race, timed
 from linksweep.engine.kernel.compile import compiled
@@ -74,6 +72,7 @@ def _errors(n_angles: int, *results: xr.Dataset) -> list[float]:
 
 
 def first_minutes(size: Size) -> list[Row]:
+    fresh.python("-c", "import linksweep")  # compiles what has no .pyc file yet, untimed
     rounds = [_first_round() for _ in range(size.processes)]
     timings = Race({job: [seconds[job] for seconds in rounds] for job in rounds[0]})
     return [
@@ -92,7 +91,7 @@ def _first_round() -> dict[str, float]:
     with TemporaryDirectory(ignore_cleanup_errors=True) as folder:
         caches = {"LINKSWEEP_CACHE_DIR": f"{folder}/kernels", "MPLCONFIGDIR": f"{folder}/matplotlib"}
         with mock.patch.dict(os.environ, caches):
-            python = partial(_python, Path(folder))
+            python = partial(fresh.python, folder=Path(folder))
             return {
                 "import xarray": timed(lambda: python("-c", "import xarray")),
                 "import linksweep": timed(lambda: python("-c", "import linksweep")),
@@ -105,9 +104,3 @@ def _first_round() -> dict[str, float]:
                 "one kernel compiled, numba awake": timed(lambda: compiled.__wrapped__(*kernel.sources)),
                 "one kernel from disk, numba awake": timed(lambda: compiled.__wrapped__(*kernel.sources)),
             }
-
-
-def _python(folder: Path, *arguments: str) -> str:
-    """Return the output of a fresh Python."""
-    command = [sys.executable, *arguments]
-    return subprocess.run(command, cwd=folder, check=True, stdout=subprocess.PIPE, text=True).stdout

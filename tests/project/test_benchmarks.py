@@ -24,7 +24,7 @@ GOALS = {
     "skipping": {0.35, 0.75},
     "solves": set(),
     "grids": set(),
-    "growth": set(),
+    "growth": {0.25},
     "mechanisms": {1.0, 1.5},
     "linkages": {80.0, 150.0, 1.0, 5.0},
     "warm": {0.25e-3, 0.45e-3},
