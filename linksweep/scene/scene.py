@@ -293,10 +293,8 @@ class Scene(ByContent):
     @cached_copy
     def bare(self) -> Scene:
         """Scene whose arrays have no labels, but for those of its loads."""
-        if not self.arrays:
-            return self
-        parts = {name: value for name, value in field_values(self).items() if name != "loads"}
-        return with_sound(self, **{name: bare(value) for name, value in parts.items()})
+        parts = field_values(self).items() if self.arrays else ()
+        return with_sound(self, **{name: bare(value) for name, value in parts if name != "loads"})
 
     @cached_property
     def inputs(self) -> Inputs:
