@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
-from itertools import pairwise
+from itertools import accumulate, pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -304,7 +304,7 @@ def ordered(plan: Plan, field: Field) -> np.ndarray:
 
 
 def flat(arrays: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-    at = np.cumsum([0, *(array.size for array in arrays)], dtype=np.int64)
+    at = np.array([*accumulate((array.size for array in arrays), initial=0)], dtype=np.int64)
     return (np.concatenate(arrays, axis=None) if arrays else np.empty(0)), at
 
 

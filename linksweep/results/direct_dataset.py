@@ -6,7 +6,7 @@ makes another Dataset than the public constructors, those are called.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass
 from functools import cache, cached_property
 from typing import Any
@@ -91,12 +91,19 @@ def _public_variable(dims: tuple[str, ...], values: np.ndarray, attributes: dict
 
 
 def _direct_variable(
-    dims: tuple[str, ...], values: Any, attributes: dict[str, Any], kind: type[xr.Variable] = xr.Variable
+    dims: tuple[Hashable, ...], values: Any, attributes: dict[Any, Any], kind: type[xr.Variable] = xr.Variable
 ) -> xr.Variable:
     """Return what ``xr.Variable`` makes of these, by its private fields."""
     made: Any = kind.__new__(kind)
     made._dims, made._data, made._attrs, made._encoding = dims, values, attributes or None, None
     return made
+
+
+def _copied(variable: xr.Variable) -> xr.Variable:
+    """Return a variable with attributes of its own; of an index, or with an encoding, as xarray does it."""
+    if type(variable) is not xr.Variable or variable._encoding:
+        return variable.to_base_variable()
+    return _direct_variable(variable._dims, variable._data, dict(variable._attrs or {}))
 
 
 def _content(ds: xr.Dataset) -> tuple[Any, ...]:
@@ -126,7 +133,7 @@ def direct(
             index = indexes[name] = PandasIndex.from_variables(along, options={})
             every |= index.create_variables(along)
         else:
-            every[name] = variable.to_base_variable()
+            every[name] = _copied(variable)
     if axis is not None:
         names.add(axis.dim)
         every[axis.dim], indexes[axis.dim] = axis.direct_variable(), axis.index

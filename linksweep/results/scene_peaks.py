@@ -10,6 +10,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from linksweep.base.frozen import cached_beside
 from linksweep.base.validate import refuse
 from linksweep.engine.kernel.writer import Reduction
 from linksweep.engine.quantity import Quantity, opposite_of, unless_jammed, where_ok
@@ -82,7 +83,7 @@ def peaks_of_scene(
     part: Part | None = None,
 ) -> xr.Dataset:
     """Return the peaks of a scene: exact, of the cycle or of a `part` of it, or the largest of a grid's samples."""
-    items, scene = _requests(scene, of), with_sections(scene, of)
+    items, scene = _requests(scene, of if of is None else tuple(of)), with_sections(scene, of)
     if angles is None:
         result = _exact(scene, items, threads, part)
     else:
@@ -131,7 +132,8 @@ def parsed_requests(
     return requests
 
 
-def _requests(scene: Scene, names: list[str] | None) -> list[Request]:
+@cached_beside
+def _requests(scene: Scene, names: tuple[str, ...] | None) -> list[Request]:
     quantities = scene.table.quantity
     known = [name for name in quantities if name != "cond"]
     default = scene.mechanism.peak_quantities(scene.drive)
@@ -251,7 +253,7 @@ def status_of(scene: Scene, result: Result, threads: int | None) -> xr.Variable:
         _blank((least == 0.0) | (status == float(PARTIAL)) & (grid.period > 0.0), largest, averages)
     for dims, values in (*(peak.value for peak in largest.values()), *averages.values()):
         infinite = np.isinf(values)
-        if infinite.any():
+        if np.count_nonzero(infinite):  # faster than `any`
             status = xr.where(variable(Field(dims, infinite), "1", "", order), float(UNBOUNDED), status)
     dims = tuple(dim for dim in order if dim in status.dims)
     words = flags(scene.mechanism.round_trip, scene.mechanism.round_meanings)

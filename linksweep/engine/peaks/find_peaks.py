@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Callable, Mapping
-from functools import cache
-from typing import NamedTuple, TypeVar
+from functools import cache, lru_cache
+from typing import NamedTuple
 
 import numpy as np
 
@@ -29,7 +29,7 @@ from linksweep.engine.peaks.brackets import (
 )
 from linksweep.engine.peaks.laid_out import WIDTHS, LaidOut, laid_out
 from linksweep.engine.peaks.lanewise import Lanewise
-from linksweep.engine.run import Field, Fields, Sizes, over_threads
+from linksweep.engine.run import Fields, Sizes, over_threads
 from linksweep.engine.trace.plan import Plan
 
 SIGNALS_AT_ONCE = 16
@@ -41,34 +41,31 @@ PIECES_TOGETHER = 256
 DESIGNS_PER_THREAD = 1000
 """Designs that pay for another thread."""
 
-Result = TypeVar("Result", "Peak", "PeakOfPiece")
-
 Values = Callable[[np.ndarray, np.ndarray], np.ndarray]
 """A function of tags and places that returns the values of the tagged signals there."""
 
 
-class Peak(NamedTuple):
-    """The peak of a signal: its largest value, its angle from the near-toggle [degree], a bound on how much higher it
-    might be, and the number of evaluations."""
+class Peaks(NamedTuple):
+    """The peaks of signals that have the same dims, as arrays over the signals and these: the largest values, their
+    angles from the near-toggle [degree], bounds on how much higher they might be, and the numbers of evaluations."""
 
-    value: Field
-    angle: Field
-    beyond: Field
-    evaluations: Field
-
-
-class PeakOfPiece(NamedTuple):
-    """The same of a signal on a piece, with its place there: half-angle tangent, and 0 or 1 for start or end."""
-
-    value: Field
-    tangent: Field
-    end: Field
-    beyond: Field
-    evaluations: Field
+    signals: tuple[str, ...]
+    dims: tuple[str, ...]
+    value: np.ndarray
+    angle: np.ndarray
+    beyond: np.ndarray
+    evaluations: np.ndarray
 
 
-ROWS = {Peak: (PEAK, PEAK_ANGLE, BEYOND, EVALUATIONS), PeakOfPiece: (PEAK, PEAK_X, PEAK_FAR, BEYOND, EVALUATIONS)}
-"""Rows of `best` in the order of the fields."""
+class PeaksOnPieces(NamedTuple):
+    """The peaks of a signal on pieces, as arrays over these; places are half-angle tangents, and 0 or 1 for the half
+    turn about the start or the end."""
+
+    value: np.ndarray
+    tangent: np.ndarray
+    end: np.ndarray
+    beyond: np.ndarray
+    evaluations: np.ndarray
 
 
 OF_DESIGNS = (INTEGERS, ROW, INTEGERS, TABLE, INTEGER, INTEGER, INTEGER, INTEGER, TABLE, ROW, ROW)
@@ -102,21 +99,27 @@ def find_peaks(
     sizes: Sizes,
     smooth: bool,
     threads: int | None,
-) -> dict[str, Peak]:
+) -> list[Peaks]:
     """Return the largest value of each signal over the turn, for every design; `smooth` tells that none has jumps or
     kinks."""
+    requests = _requests(plan, signals)
+    return [_peaks(request, laid_out(request, inputs, sizes), smooth, threads) for request in requests]
+
+
+@lru_cache(maxsize=64)
+def _requests(plan: Plan, signals: tuple[str, ...]) -> list[Plan]:
+    """Return plans of signals that have the same dims, and are searched together."""
     together = defaultdict(list)
     for signal in signals:
         together[plan.outputs[signal].dims].append(signal)
-    peaks: dict[str, Peak] = {}
-    for group in together.values():
-        for first in range(0, len(group), SIGNALS_AT_ONCE):
-            request = plan.only((*group[first : first + SIGNALS_AT_ONCE], *WIDTHS))
-            peaks |= _peaks(request, laid_out(request, inputs, sizes), smooth, threads)
-    return peaks
+    return [
+        plan.only((*some[first : first + SIGNALS_AT_ONCE], *WIDTHS))
+        for some in together.values()
+        for first in range(0, len(some), SIGNALS_AT_ONCE)
+    ]
 
 
-def _peaks(plan: Plan, designs: LaidOut, smooth: bool, threads: int | None) -> dict[str, Peak]:
+def _peaks(plan: Plan, designs: LaidOut, smooth: bool, threads: int | None) -> Peaks:
     """Return the peaks of a plan's signals, which all have the same dims."""
     signals, lanes, blocks = designs.signals, designs.lanes, designs.blocks
     run: Callable = compiled_search() if designs.compiled else abreast.search
@@ -131,7 +134,8 @@ def _peaks(plan: Plan, designs: LaidOut, smooth: bool, threads: int | None) -> d
 
     with np.errstate(all="ignore"):
         over_threads(work, blocks, 1 + designs.designs // DESIGNS_PER_THREAD, threads)
-    return _of_designs(Peak, designs, best, plan.loops)
+    stored = _of_designs(designs, best)
+    return Peaks(signals, plan.loops, *(stored[row] for row in (PEAK, PEAK_ANGLE, BEYOND, EVALUATIONS)))
 
 
 def find_peaks_on_pieces(
@@ -142,19 +146,20 @@ def find_peaks_on_pieces(
     owners: np.ndarray,
     half: int,
     threads: int | None,
-) -> dict[str, PeakOfPiece]:
+) -> dict[str, PeaksOnPieces]:
     """Return the largest value of each signal on every piece, or a sample of it where another piece of the same design
     has a larger one.
 
     Pieces lie along `dim`; `owners` are their designs, in order; `half` is how many samples there are on either side of
     the middle of each half turn that follows a piece.
     """
-    peaks: dict[str, PeakOfPiece] = {}
+    peaks: dict[str, PeaksOnPieces] = {}
     for first in range(0, len(signals), SIGNALS_AT_ONCE):
         request = plan.only((*signals[first : first + SIGNALS_AT_ONCE], *WIDTHS))
         pieces = laid_out(request, inputs, {dim: len(owners)}, half)
         best = _best_on_pieces(pieces, owners.astype(np.int64), threads)
-        peaks |= _of_designs(PeakOfPiece, pieces, best, request.loops)
+        stored, rows = _of_designs(pieces, best), (PEAK, PEAK_X, PEAK_FAR, BEYOND, EVALUATIONS)
+        peaks |= {signal: PeaksOnPieces(*(stored[row, k] for row in rows)) for k, signal in enumerate(pieces.signals)}
     return peaks
 
 
@@ -175,12 +180,10 @@ def _best_on_pieces(pieces: LaidOut, owners: np.ndarray, threads: int | None) ->
     return best
 
 
-def _of_designs(kind: type[Result], designs: LaidOut, best: np.ndarray, dims: tuple[str, ...]) -> dict[str, Result]:
-    """Return the results of designs, whose columns may fill whole blocks."""
-    signals = designs.signals
-    stored = best.reshape(len(best), len(signals), -1)[..., : designs.designs]
-    stored = stored.reshape(*stored.shape[:2], *designs.shape)
-    return {signal: kind(*(Field(dims, stored[row, k, ...]) for row in ROWS[kind])) for k, signal in enumerate(signals)}
+def _of_designs(designs: LaidOut, best: np.ndarray) -> np.ndarray:
+    """Return the results (row, signal, design dims) of designs, whose columns may fill whole blocks."""
+    rows, signals = len(best), len(designs.signals)
+    return best.reshape(rows, signals, -1)[..., : designs.designs].reshape(rows, signals, *designs.shape)
 
 
 def zeros_of_pieces(plan: Plan, inputs: Fields, sizes: Sizes, threads: int | None) -> np.ndarray:

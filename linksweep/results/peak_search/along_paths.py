@@ -64,7 +64,7 @@ def angle_in_period(angle: Array, period: float) -> Array:
 def start_near_period(angle: Array, period: float) -> Array:
     """Return the angles of peaks, changed in place: one within rounding of the period becomes 0."""
     near = angle >= period - NEAR_PERIOD
-    if near.any():
+    if np.count_nonzero(near):  # faster than `any`
         angle[near] = 0.0
     return angle
 

@@ -19,7 +19,7 @@ import numpy as np
 
 from linksweep.base.frozen import cached_beside
 from linksweep.engine.peaks.evaluators import FAR, FAR_WIDTH, NEAR_WIDTH, TANGENT
-from linksweep.engine.peaks.find_peaks import Peak, find_peaks
+from linksweep.engine.peaks.find_peaks import Peaks, find_peaks
 from linksweep.engine.quantity import regardless_of_jams
 from linksweep.engine.run import Field, Sizes
 from linksweep.engine.trace.plan import Plan, plan
@@ -130,8 +130,7 @@ def _fused_first(scene: Scene, signals: tuple[str, ...], assembly: Field, thread
     """Return peaks from the fused search of whole turns, or of their pieces, raised to those along paths where its
     samples do not suffice."""
     names, turning = (*signals, "assembly"), _turning(scene, signals)
-    kinds = np.broadcast_to(aligned(assembly, tuple(scene.inputs.sizes)), tuple(scene.inputs.sizes.values()))
-    whole, partly = (np.flatnonzero(kinds == kind) for kind in (EVERYWHERE, PARTLY))
+    whole, partly = (_designs_of(scene, assembly, kind) for kind in (EVERYWHERE, PARTLY))
     arcs_known = _arcs_known(scene, names, partly)
     partly, also_searched = (partly, partly[:0]) if arcs_known else (partly[:0], partly)
     searched = np.union1d(whole, also_searched) if len(also_searched) else whole
@@ -152,7 +151,7 @@ def _fused_first(scene: Scene, signals: tuple[str, ...], assembly: Field, thread
         narrow = np.intersect1d(with_narrow_approaches(scene, threads), whole)
         for group in groups(scene, names, narrow, WINDOWS_AT_ONCE):
             follow(group, peaks, (about_approaches,), threads)
-    for group in groups(scene, names, follow_unbounded(scene, partly, peaks, threads)):
+    for group in groups(scene, names, follow_unbounded(scene, partly, peaks, threads)) if len(partly) else ():
         follow(group, peaks, paths_of(scene, PARTLY), threads)
     return {signal: peaks[signal] for signal in signals}
 
@@ -161,6 +160,15 @@ def paths_of(scene: Scene, kind: float) -> tuple[PathsOf, ...]:
     """Return all paths along which designs of one kind of assembly are searched."""
     along, windows = (turns, about_approaches) if kind == EVERYWHERE else (arcs, about_approaches_on_arcs)
     return (along, windows) if scene.approaches() else (along,)
+
+
+def _designs_of(scene: Scene, assembly: Field, kind: float) -> Array:
+    """Return the designs of one kind of assembly."""
+    sizes = scene.inputs.sizes
+    if not np.count_nonzero(assembly.values):  # as of most scenes
+        return np.arange(math.prod(sizes.values()) if kind == EVERYWHERE else 0)
+    kinds = np.broadcast_to(aligned(assembly, tuple(sizes)), tuple(sizes.values()))
+    return np.flatnonzero(kinds == kind)
 
 
 def _arcs_known(scene: Scene, names: tuple[str, ...], designs: Array) -> bool:
@@ -190,17 +198,18 @@ def _fused(
     if len(designs) == math.prod(scene.inputs.sizes.values()):
         inputs = scene.inputs
         request = _between_samples(scene, signals)
-        return _at_angles(scene, find_peaks(request, signals, inputs.fields, inputs.sizes, smooth, threads))
+        found = find_peaks(request, signals, inputs.fields, inputs.sizes, smooth, threads)
+        return {signal: peak for some in found for signal, peak in _at_angles(scene, some).items()}
     peaks = {signal: nothing(field) for signal, field in empty(scene, signals).items()}
     places = ((TANGENT, (scene.mechanism.index, ONE)), (FAR, (scene.mechanism.index,)))
     for group in groups(scene, signals, designs, AT_ONCE):
         rows, middle = np.arange(len(group.designs)), group.number(scene.mechanism.near_toggle_angle)
         names = (*signals, NEAR_WIDTH, FAR_WIDTH)
         request, inputs_of_group = group.one_by_one(scene.table.between_samples, names, rows, {}, places)
-        results = find_peaks(request, signals, inputs_of_group, {ONE: len(rows)}, smooth, threads)
-        for signal, peak in results.items():
-            value, angle, bound, samples = (field.values for field in peak)
-            put(peaks[signal], group, (value, angle_in_period(angle + middle, scene.period), bound, samples))
+        for some in find_peaks(request, signals, inputs_of_group, {ONE: len(rows)}, smooth, threads):
+            angles = angle_in_period(some.angle + middle, scene.period)
+            for signal, *numbers in zip(some.signals, some.value, angles, some.beyond, some.evaluations, strict=True):
+                put(peaks[signal], group, tuple(numbers))
     return peaks
 
 
@@ -225,35 +234,38 @@ def _turning(scene: Scene, signals: tuple[str, ...]) -> tuple[str, ...]:
 def _constants(scene: Scene, signals: tuple[str, ...], designs: Array) -> dict[str, SignalPeak]:
     """Return the peaks of signals that do not depend on the angle: at 0, after one sample; NaN where none of these
     designs shares one."""
-    values = compute(scene, scene.grid(1), signals) if signals else {}
+    if not signals:
+        return {}
     sizes = scene.inputs.sizes
     good = np.zeros(math.prod(sizes.values()), dtype=bool)
     good[designs] = True
-    peaks = {signal: _constant(field) for signal, field in values.items()}
-    return peaks_where(Field(tuple(sizes), good.reshape(tuple(sizes.values()))), peaks) if peaks else {}
+    peaks = {signal: _constant(field) for signal, field in compute(scene, scene.grid(1), signals).items()}
+    return peaks_where(Field(tuple(sizes), good.reshape(tuple(sizes.values()))), peaks)
 
 
-def _at_angles(scene: Scene, peaks: dict[str, Peak]) -> dict[str, SignalPeak]:
+def _at_angles(scene: Scene, peaks: Peaks) -> dict[str, SignalPeak]:
     """Return peaks of the fused search, whose angles are those from the near-toggle, with their angles from x.
 
     A signal may depend on the crank's angle from the frame alone; its angle from x has the dims of the frame's, too.
     """
-    middle, results = scene.mechanism.near_toggle_angle, {}
+    middle = scene.mechanism.near_toggle_angle
     if hasattr(middle, "dims"):
-        peaks = {signal: _over_dims_of(middle, peak, scene.inputs.sizes) for signal, peak in peaks.items()}
-    turned = hasattr(middle, "dims") or middle != 0.0
-    for signal, (value, (dims, angle), bound, samples) in peaks.items():
-        angle = in_period(angle + aligned(middle, dims), scene.period) if turned else angle
-        results[signal] = SignalPeak(value, Field(dims, start_near_period(angle, scene.period)), bound, samples)
-    return results
+        peaks = _over_dims_of(middle, peaks, scene.inputs.sizes)
+    signals, dims, value, angle, *others = peaks
+    if hasattr(middle, "dims") or middle != 0.0:
+        angle = in_period(angle + aligned(middle, dims), scene.period)
+    numbers = value, start_near_period(angle, scene.period), *others
+    return {s: SignalPeak(*(Field(dims, array[k, ...]) for array in numbers)) for k, s in enumerate(signals)}
 
 
-def _over_dims_of(middle: Any, peak: Peak, sizes: Sizes) -> Peak:
-    """Return a peak with the dims of the frame's angle, too: a signal may depend on the crank's angle from the frame
+def _over_dims_of(middle: Any, peaks: Peaks, sizes: Sizes) -> Peaks:
+    """Return peaks with the dims of the frame's angle, too: a signal may depend on the crank's angle from the frame
     alone, but its peak's angle from x does not."""
-    dims = (*peak.value.dims, *(dim for dim in middle.dims if dim not in peak.value.dims))
-    shape = tuple(sizes[dim] for dim in dims)
-    return Peak(*(Field(dims, np.broadcast_to(aligned(field, dims), shape).copy()) for field in peak))
+    signals, dims, *numbers = peaks
+    more = [dim for dim in middle.dims if dim not in dims]
+    shape = (*numbers[0].shape, *(sizes[dim] for dim in more))
+    wider = (np.broadcast_to(array.reshape(*array.shape, *[1] * len(more)), shape).copy() for array in numbers)
+    return Peaks(signals, (*dims, *more), *wider)
 
 
 def _constant(field: Field) -> SignalPeak:

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from linksweep.engine.peaks.evaluators import ALONG, END, FAR, FAR_WIDTH, NEAR_WIDTH, TANGENT
-from linksweep.engine.peaks.find_peaks import PeakOfPiece, find_peaks_on_pieces, zeros_of_pieces
+from linksweep.engine.peaks.find_peaks import PeaksOnPieces, find_peaks_on_pieces, zeros_of_pieces
 from linksweep.engine.peaks.search import FEW, HALF
 from linksweep.engine.quantity import Row, Table
 from linksweep.engine.run import Fields, evaluate
@@ -138,19 +138,18 @@ def _by_samples(group: Group) -> Iterator[tuple[int, Group]]:
             yield half, group.some(some)
 
 
-def _highest(group: Group, pieces: Pieces, inputs: Fields, peak: PeakOfPiece) -> tuple[Array, ...]:
+def _highest(group: Group, pieces: Pieces, inputs: Fields, peak: PeaksOnPieces) -> tuple[Array, ...]:
     """Return value, angle [degree], bound and samples of the highest peak of each design's pieces."""
     first = np.flatnonzero(np.diff(pieces.row, prepend=-1))
-    value, beyond = peak.value.values, peak.beyond.values
-    height = np.nan_to_num(value, nan=-np.inf)
+    value, height = peak.value, np.nan_to_num(peak.value, nan=-np.inf)
     highest = np.maximum.reduceat(height, first)
     winner = np.flatnonzero(height == highest[pieces.row])[::-1]
     own = np.empty(len(first), dtype=int)
     own[pieces.row[winner]] = winner  # the first of equals is written last
-    reach = np.maximum.reduceat(np.nan_to_num(value + beyond, nan=-np.inf), first)
-    angle = _angles(pieces, inputs, own, peak.tangent.values[own], peak.end.values[own])
+    reach = np.maximum.reduceat(np.nan_to_num(value + peak.beyond, nan=-np.inf), first)
+    angle = _angles(pieces, inputs, own, peak.tangent[own], peak.end[own])
     angle = angle_in_period(angle + group.number(group.scene.mechanism.near_toggle_angle), group.scene.period)
-    samples = np.add.reduceat(peak.evaluations.values, first)
+    samples = np.add.reduceat(peak.evaluations, first)
     unknown = np.isnan(value[own])
     return tuple(np.where(unknown, np.nan, numbers) for numbers in (highest, angle, reach - highest, samples))
 

@@ -59,6 +59,8 @@ def _of_output(signals: tuple[str, ...]) -> bool:
 
 def with_dead_centres(scene: Scene, assembly: Field) -> Field:
     """Return `assembly` as it is, but PARTLY where a dead centre or friction forbids some angles of a whole turn."""
+    if surely_ok(scene):
+        return assembly
     status = xr.Variable(assembly.dims, assembly.values, fastpath=True)  # else xarray imports dask to look at them
     if may_jam(scene):
         jammed = jammed_designs(scene)
