@@ -9,13 +9,14 @@ samples lie inside, so that a jump at a knot has its limit on either side.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from functools import lru_cache, partial
+from functools import partial
 from itertools import chain
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import xarray as xr
 
+from linksweep.base.frozen import cached_beside
 from linksweep.base.validate import Rule
 from linksweep.engine.quantity import Row
 from linksweep.engine.run import Field
@@ -101,7 +102,7 @@ def _terms(name: str, nth: int, count: int) -> tuple[str, ...]:
     return tuple(f"{name}_{nth}_{power}" for power in range(count))
 
 
-@lru_cache(maxsize=2)
+@cached_beside
 def polynomials(scene: Scene) -> Polynomials | None:
     """Return the inputs of a scene that change over the angle as polynomials; None where they are none.
 
