@@ -6,8 +6,10 @@
     sample(constants, x, rows)                              all signals at all samples of the turn
     evaluate(constants, table, x, value, far, signal, first, last)
                                                             one signal at one place in each lane `first` … `last`
+    enter(front, piece, sizes, parameters, parameter_at, constants)
+                                                            numbers of a piece of each design, beside those it has
 
-The last takes the numbers of rows of a table: of the place, the value, the half turn and the signal's number.
+`evaluate` takes the numbers of rows of a table: of the place, the value, the half turn and the signal's number.
 
 Arrays have a row of lanes for each number, one after the other. `constants` begins with the widths of the near-toggles;
 `x` of `sample` has the tangents of samples of each half turn, with one more on either side. Those before the middle
@@ -46,6 +48,9 @@ SOURCE = inspect.getsource(sys.modules[__name__]) + inspect.getsource(parities)
 """All that enters the machine code besides nodes and instructions."""
 TANGENT, FAR = "half_tangent", "far_half"
 """Inputs that place a sample: the tangent of half its angle from the middle of its half turn, and which half."""
+PIECE = "_piece"
+"""Dim of the pieces of a turn: they are counted after the designs, those of all designs with the same number together.
+"""
 ALONG, END = "piece_tangent", "piece_end"
 """Inputs that place a sample on a piece of the turn instead, which a turn follows there and back: the tangent of half
 the angle from the piece's start or end, and which of the two."""
@@ -60,7 +65,7 @@ Pairs = Iterator[tuple[Any, Any, Values, Values]]
 
 
 class Functions(NamedTuple):
-    """The four functions, the number of their lanes, that of the constants of a design, and that of what all share."""
+    """The functions, the number of their lanes, that of the constants of a design, and that of what all share."""
 
     lanes: int
     constants: int
@@ -69,11 +74,15 @@ class Functions(NamedTuple):
     share: Callable[..., Any]
     sample: Callable[..., Any]
     evaluate: Callable[..., Any]
+    enter: Callable[..., Any] | None = None
+    """None where designs are not divided into pieces."""
 
     @property
     def passed(self) -> list[Any]:
-        """The four as a search takes them: compiled ones by their addresses."""
-        return [each.address if isinstance(each, MachineCode) else each for each in self[3:]]
+        """The functions as a search takes them, on pieces with `enter` in place of `share`: compiled ones by their
+        addresses."""
+        functions = self.prepare, self.enter or self.share, self.sample, self.evaluate
+        return [each.address if isinstance(each, MachineCode) else each for each in functions]
 
 
 class Evaluators:
@@ -87,9 +96,13 @@ class Evaluators:
         self.tangent, self.far = (place[ALONG], place[END]) if self.even else (place[TANGENT], place[FAR])
         work = [node for node in plan.nodes if node.operator not in ("input", "constant")]
         self.inputs = [node for node in place.values() if node not in (self.tangent, self.far)]
+        self.dims = sorted(plan.loops, key=lambda dim: dim != PIECE)
+        """The design dims as designs are counted, the last one fastest."""
         self.of_designs = [node for node in work if not self._turns(node)]
         self.at_samples = [node for node in work if self._turns(node)]
         used = {x for node in self.at_samples for x in node.operands if x.operator != "constant" and not self._turns(x)}
+        read = {x for node in self.of_designs if self._of_piece(node) for x in node.operands}
+        used |= {x for x in read if x.operator != "constant" and not self._of_piece(x)}
         widths = [plan.outputs[NEAR_WIDTH], plan.outputs[FAR_WIDTH]]
         self.constants = [*widths, *sorted(used, key=lambda node: node.position)]
         self.fixed = [node for node in plan.nodes if node.operator == "constant"]
@@ -111,6 +124,11 @@ class Evaluators:
         """Return whether a node depends on the place."""
         return self.plan.index in node.dims
 
+    @staticmethod
+    def _of_piece(node: Node) -> bool:
+        """Return whether a node has a number for each piece."""
+        return PIECE in node.dims
+
     def _of_all(self) -> set[Node]:
         """Return the nodes with the same value for all designs at a sample; none where those have samples of their
         own."""
@@ -130,17 +148,23 @@ class Evaluators:
     @cached_property
     def interpreted(self) -> Functions:
         """The functions by the interpreter, for one lane: its constants are the widths, and the parameters as such."""
-        return Functions(1, 2 + len(self.inputs), 0, self._prepare, self._share, self._sample, self._evaluate)
+        functions = self._prepare, self._share, self._sample, self._evaluate
+        return Functions(1, 2 + len(self.inputs), 0, *functions, self._enter if PIECE in self.dims else None)
 
     def _prepare(self, front: int, designs: int, sizes, parameters, parameter_at, constants: np.ndarray) -> None:
-        digits = np.unravel_index(front, tuple(sizes))
+        digit = dict(zip(self.dims, np.unravel_index(front, tuple(sizes)), strict=True))
+        size = dict(zip(self.dims, sizes, strict=True))
         for k, node in enumerate(self.inputs):
             place = 0
-            for dim, size, digit in zip(self.plan.loops, sizes, digits, strict=True):
-                place = place * size + digit if dim in node.dims else place
+            for dim in (dim for dim in self.plan.loops if dim in node.dims):
+                place = place * size[dim] + digit[dim]
             constants[2 + k] = parameters[parameter_at[k] + place]
         here = self._at(constants, np.zeros(1), 0.0)
         constants[:2] = [here[node].item() for node in self.constants[:2]]
+
+    def _enter(self, front: int, piece: int, sizes, parameters, parameter_at, constants: np.ndarray) -> None:
+        designs = np.prod(sizes[1:], dtype=int)
+        self._prepare(piece * designs + front, designs, sizes, parameters, parameter_at, constants)
 
     def _share(self, constants: np.ndarray, x: np.ndarray) -> None:
         """Do nothing: all is computed for each design."""
@@ -172,46 +196,66 @@ class Evaluators:
     @cached_property
     def compiled(self) -> Functions:
         """The functions as machine code, for `LANES` lanes."""
-        text = self._text()
+        text, of_designs = self._text(), (INTEGER, INTEGER, INTEGERS, ROW, INTEGERS, ROW)
         return Functions(
             LANES,
             len(self.constants),
             4 * (HALF + 1) * len(self.shared),
-            machine_code(self._emit_prepare, (INTEGER, INTEGER, INTEGERS, ROW, INTEGERS, ROW), text),
+            machine_code(self._emit_prepare, of_designs, text),
             machine_code(self._emit_share, (ROW, ROW), text if self.shared else ""),
             machine_code(self._emit_sample, (ROW, ROW, ROW), text),
             machine_code(self._emit_evaluate, (ROW, TABLE, *[INTEGER] * 6), text),
+            machine_code(self._emit_enter, of_designs, text) if PIECE in self.dims else None,
         )
 
-    def _emit_prepare(
-        self, builder: Any, front: Any, designs: Any, sizes: Any, parameters: Any, parameter_at: Any, constants: Any
-    ) -> None:
+    def _emit_prepare(self, builder: Any, front: Any, designs: Any, sizes: Any, *arrays: Any) -> None:
         """Emit the constants of designs side by side; lanes beyond the last design repeat it."""
-        vectors = Instructions(builder)
-        integer, none = vectors.integer, vectors.integer(0)
+        vectors, digit = Instructions(builder), dict[str, Any]()
+        design = self._side_by_side(vectors, front, designs)
+        for k, dim in reversed([*enumerate(self.dims)]):  # the outermost takes what the others leave
+            size = vectors.wide(_number(builder, sizes, vectors.integer(k)))
+            digit[dim] = builder.urem(design, size) if k else design
+            design = builder.udiv(design, size) if k else design
+        self._emit_constants(vectors, digit, frozenset(), sizes, *arrays)
 
-        def number(array: Any, k: int) -> Any:
-            return builder.load(builder.gep(array.data, [integer(k)]))
+    def _emit_enter(self, builder: Any, front: Any, piece: Any, sizes: Any, *arrays: Any) -> None:
+        """Emit the constants of a piece of each design, from those that all its pieces have."""
+        vectors, (piece_dim, *others) = Instructions(builder), self.dims
+        digit = {piece_dim: vectors.wide(piece)}
+        for dim in others:
+            digit[dim] = self._side_by_side(vectors, front, _number(builder, sizes, vectors.integer(1)))
+        self._emit_constants(vectors, digit, frozenset([piece_dim]), sizes, *arrays)
 
-        lanes = vectors.ir.VectorType(integer, LANES)([*range(LANES)])
-        design, latest = builder.add(vectors.wide(front), lanes), vectors.wide(builder.sub(designs, integer(1)))
-        design = builder.select(builder.icmp_signed("<", design, latest), design, latest)
-        size, digit = {}, {}  # of each design dim, the outermost of which takes what the others leave
-        for k, dim in reversed([*enumerate(self.plan.loops)]):
-            size[dim] = vectors.wide(number(sizes, k))
-            digit[dim] = builder.urem(design, size[dim]) if k else design
-            design = builder.udiv(design, size[dim]) if k else design
-        values = {}
+    def _side_by_side(self, vectors: Instructions, front: Any, designs: Any) -> Any:
+        """Emit the numbers of designs side by side; beyond the last design, its own."""
+        builder = vectors.builder
+        lanes = vectors.ir.VectorType(vectors.integer, LANES)([*range(LANES)])
+        design, latest = builder.add(vectors.wide(front), lanes), vectors.wide(builder.sub(designs, vectors.integer(1)))
+        return builder.select(builder.icmp_signed("<", design, latest), design, latest)
+
+    def _emit_constants(self, vectors: Instructions, digit: dict, alike: frozenset[str], *arrays: Any) -> None:
+        """Emit the constants that depend on all of some dims, in which lanes are `alike`, from those that do not."""
+        builder, integer, (sizes, parameters, parameter_at, constants) = vectors.builder, vectors.integer, arrays
+        size = {dim: vectors.wide(_number(builder, sizes, integer(k))) for k, dim in enumerate(self.dims)}
+        known = {node: k for k, node in enumerate(self.constants) if not alike <= node.dims}
+        values = {node: vectors.load(constants.data, integer(k * LANES)) for node, k in known.items()}
         for k, node in enumerate(self.inputs):
-            place = vectors.wide(none)
+            if not alike <= node.dims:
+                continue
+            place = vectors.wide(integer(0))
             for dim in (dim for dim in self.plan.loops if dim in node.dims):
                 place = builder.add(builder.mul(place, size[dim]), digit[dim])
-            start = builder.gep(parameters.data, [number(parameter_at, k)])
+            start = builder.gep(parameters.data, [_number(builder, parameter_at, integer(k))])
+            first = builder.extract_element(place, integer(0))
+            if node.dims <= alike:
+                values[node] = vectors.wide(builder.load(builder.gep(start, [first])))
+                continue
             values[node] = vectors.gather(start, place)
-            vectors.prefetch(start, builder.add(builder.extract_element(place, none), integer(SOON)))
-        interpret([*self.fixed, *self.of_designs], values, vectors.operators)
+            vectors.prefetch(start, builder.add(first, integer(SOON)))
+        interpret([*self.fixed, *(node for node in self.of_designs if alike <= node.dims)], values, vectors.operators)
         for k, node in enumerate(self.constants):
-            vectors.store(values[node], constants.data, integer(k * LANES))
+            if node not in known:
+                vectors.store(values[node], constants.data, integer(k * LANES))
 
     def _emit_share(self, builder: Any, constants: Any, x: Any) -> None:
         """Emit the numbers that all designs share at each sample and at its mirror, behind the places in `x`."""
@@ -343,3 +387,8 @@ class Evaluators:
         roles = [[nodes[node] for node in role] for role in (self.inputs, self.constants, self.signals, self.shared)]
         dims = [[dim in node.dims for dim in self.plan.loops] for node in self.inputs]
         return f"{SOURCE} {HALF} {sorted(SLOW)} {lines} {roles} {dims}"
+
+
+def _number(builder: Any, array: Any, k: Any) -> Any:
+    """Emit a number of an array."""
+    return builder.load(builder.gep(array.data, [k]))

@@ -27,6 +27,7 @@ from linksweep.engine.peaks.brackets import (
     TRIALS,
     X1,
 )
+from linksweep.engine.peaks.evaluators import PIECE
 from linksweep.engine.peaks.laid_out import WIDTHS, LaidOut, laid_out
 from linksweep.engine.peaks.lanewise import Lanewise
 from linksweep.engine.run import Fields, Sizes, over_threads
@@ -36,8 +37,8 @@ SIGNALS_AT_ONCE = 16
 """Signals searched together."""
 INTERPRETED_SAMPLES = 100_000
 """Samples that a search along paths may evaluate interpreted."""
-PIECES_TOGETHER = 256
-"""Pieces of whole designs that are searched together, about: their samples stay in the caches."""
+PIECES_TOGETHER = 192
+"""Pieces that are searched together, at least, in whole blocks of designs: their samples stay in the caches."""
 DESIGNS_PER_THREAD = 1000
 """Designs that pay for another thread."""
 
@@ -58,18 +59,20 @@ class Peaks(NamedTuple):
 
 
 class PeaksOnPieces(NamedTuple):
-    """The peaks of a signal on pieces, as arrays over these; places are half-angle tangents, and 0 or 1 for the half
-    turn about the start or the end."""
+    """The peaks of a signal on the pieces of designs, as arrays over these; places are half-angle tangents, 0 or 1 for
+    the half turn about the start or the end, and the number of the piece."""
 
     value: np.ndarray
     tangent: np.ndarray
     end: np.ndarray
     beyond: np.ndarray
     evaluations: np.ndarray
+    piece: np.ndarray
 
 
 OF_DESIGNS = (INTEGERS, ROW, INTEGERS, TABLE, INTEGER, INTEGER, INTEGER, INTEGER, TABLE, ROW, ROW)
 """Kinds of the arguments of a search that `laid_out` makes."""
+ON_PIECES = (*OF_DESIGNS[:-2], TABLE, TABLE)
 
 
 @cache
@@ -81,15 +84,14 @@ def compiled_search() -> MachineCode:
 @cache
 def compiled_search_on_pieces() -> MachineCode:
     """Return `on_pieces.search` as machine code."""
-    tables = (*[TABLE] * 5, ROW, TABLE, TABLE, ROW, TABLE)
-    kinds = (INTEGER, INTEGER, INTEGERS, INTEGERS, INTEGER, *OF_DESIGNS[:-3], *tables)
-    return translated(on_pieces.search, kinds)
+    tables = TABLE, TABLE, ROW, TABLE, TABLE, ROW, TABLE, TABLE
+    return translated(on_pieces.search, (*[INTEGER] * 4, INTEGERS, *ON_PIECES, *tables))
 
 
 @cache
 def compiled_zeros() -> MachineCode:
     """Return `zeros.find_zeros` as machine code."""
-    return translated(zeros.find_zeros, (*[INTEGER] * 4, *OF_DESIGNS, TABLE, ROW, "f8[:, :, :]"))
+    return translated(zeros.find_zeros, (*[INTEGER] * 4, INTEGERS, *ON_PIECES, TABLE, ROW, "f8[:, :, :]"))
 
 
 def find_peaks(
@@ -139,45 +141,48 @@ def _peaks(plan: Plan, designs: LaidOut, smooth: bool, threads: int | None) -> P
 
 
 def find_peaks_on_pieces(
-    plan: Plan,
-    signals: tuple[str, ...],
-    inputs: Fields,
-    dim: str,
-    owners: np.ndarray,
-    half: int,
-    threads: int | None,
+    plan: Plan, signals: tuple[str, ...], inputs: Fields, dim: str, counts: np.ndarray, half: int, threads: int | None
 ) -> dict[str, PeaksOnPieces]:
-    """Return the largest value of each signal on every piece, or a sample of it where another piece of the same design
-    has a larger one.
+    """Return the largest value of each signal on all pieces of every design.
 
-    Pieces lie along `dim`; `owners` are their designs, in order; `half` is how many samples there are on either side of
+    Designs lie along `dim`, and have so many pieces (`counts`); `half` is how many samples there are on either side of
     the middle of each half turn that follows a piece.
     """
     peaks: dict[str, PeaksOnPieces] = {}
+    counts = counts.astype(np.int64)
     for first in range(0, len(signals), SIGNALS_AT_ONCE):
         request = plan.only((*signals[first : first + SIGNALS_AT_ONCE], *WIDTHS))
-        pieces = laid_out(request, inputs, {dim: len(owners)}, half)
-        best = _best_on_pieces(pieces, owners.astype(np.int64), threads)
-        stored, rows = _of_designs(pieces, best), (PEAK, PEAK_X, PEAK_FAR, BEYOND, EVALUATIONS)
-        peaks |= {signal: PeaksOnPieces(*(stored[row, k] for row in rows)) for k, signal in enumerate(pieces.signals)}
+        pieces = laid_out(request, inputs, {dim: len(counts), PIECE: int(counts.max())}, half)
+        best = _best_on_pieces(pieces, counts, threads)
+        rows = (PEAK, PEAK_X, PEAK_FAR, BEYOND, EVALUATIONS, on_pieces.OF_PIECE)
+        peaks |= {signal: PeaksOnPieces(*(best[row, k] for row in rows)) for k, signal in enumerate(pieces.signals)}
     return peaks
 
 
-def _best_on_pieces(pieces: LaidOut, owners: np.ndarray, threads: int | None) -> np.ndarray:
-    """Return the results of a search on pieces, a column for each piece of each signal, one signal after the other."""
+def _best_on_pieces(pieces: LaidOut, counts: np.ndarray, threads: int | None) -> np.ndarray:
+    """Return the results of a search on pieces (row, signal, design)."""
     run: Callable = compiled_search_on_pieces() if pieces.compiled else on_pieces.search
-    starts = np.flatnonzero(np.diff(owners, prepend=-1))
-    bounds = np.append(starts[:: max(1, PIECES_TOGETHER * len(starts) // max(1, len(owners)))], len(owners))
-    most = int(np.diff(bounds).max(initial=0))
-    blocks = -(-most // pieces.lanes)
-    best = np.empty((BEST_ROWS + 1, len(pieces.signals) * len(owners)))
+    lanes, signals, (blocks, together) = pieces.lanes, len(pieces.signals), _blocks_of_pieces(pieces, len(counts))
+    most = together * pieces.shape[0] * signals * lanes
+    best = np.empty((on_pieces.OF_PIECE + 1, signals * len(counts)))
 
     def work(first: int, last: int) -> None:
-        run(first, last, bounds, owners, pieces.lanes, *pieces.arguments_of_pieces(blocks, most), best)
+        run(
+            first, last, together, lanes, counts, *pieces.arguments_of_pieces(together),
+            np.zeros((abreast.STATE_ROWS, signals * lanes)), np.zeros((abreast.STATE_ROWS, lanes)),
+            np.zeros(together * signals * lanes), np.zeros((on_pieces.SUMMIT_ROWS, most)),
+            np.zeros((BRACKET_ROWS, abreast.ROOM)), pieces.gathered, np.zeros((on_pieces.OF_PIECE, most)), best,
+        )  # fmt: skip
 
     with np.errstate(all="ignore"):
-        over_threads(work, len(bounds) - 1, 1 + len(starts) // DESIGNS_PER_THREAD, threads)
-    return best
+        over_threads(work, blocks, 1 + len(counts) // DESIGNS_PER_THREAD, threads)
+    return best.reshape(len(best), signals, len(counts))
+
+
+def _blocks_of_pieces(pieces: LaidOut, designs: int) -> tuple[int, int]:
+    """Return the number of blocks of designs, and how many of them are searched together."""
+    blocks = -(-designs // pieces.lanes)
+    return blocks, min(blocks, -(-PIECES_TOGETHER // (pieces.shape[0] * pieces.lanes)))
 
 
 def _of_designs(designs: LaidOut, best: np.ndarray) -> np.ndarray:
@@ -186,23 +191,27 @@ def _of_designs(designs: LaidOut, best: np.ndarray) -> np.ndarray:
     return best.reshape(rows, signals, -1)[..., : designs.designs].reshape(rows, signals, *designs.shape)
 
 
-def zeros_of_pieces(plan: Plan, inputs: Fields, sizes: Sizes, threads: int | None) -> np.ndarray:
-    """Return the zeros of a plan's one signal on pieces (number, piece, nth), NaN for none: tangents, and 0 or 1 for
-    the half turn about the start or the end."""
-    pieces = laid_out(plan, inputs, sizes)
+def zeros_of_pieces(
+    plan: Plan, inputs: Fields, dim: str, counts: np.ndarray, half: int, threads: int | None
+) -> np.ndarray:
+    """Return the zeros of a plan's one signal on pieces (number, design, piece, nth), NaN for none: tangents, and 0 or
+    1 for the half turn about the start or the end. The other arguments are as in `find_peaks_on_pieces`."""
+    counts = counts.astype(np.int64)
+    pieces = laid_out(plan, inputs, {dim: len(counts), PIECE: int(counts.max())}, half)
     run: Callable = compiled_zeros() if pieces.compiled else zeros.find_zeros
-    places = np.full((2, pieces.blocks * pieces.lanes, zeros.MOST_ZEROS), np.nan)
-    room = zeros.MOST_ZEROS * abreast.BLOCKS * pieces.lanes
+    blocks, together = _blocks_of_pieces(pieces, len(counts))
+    most, room = pieces.shape[0], zeros.MOST_ZEROS * together * pieces.shape[0] * pieces.lanes
+    places = np.full((2, len(counts) * most, zeros.MOST_ZEROS), np.nan)
 
     def work(first: int, last: int) -> None:
         run(
-            first, last, pieces.designs, pieces.lanes, *pieces.arguments(first, last),
+            first, last, together, pieces.lanes, counts, *pieces.arguments_of_pieces(together),
             np.zeros((zeros.ZERO_ROWS, room)), pieces.gathered, places,
         )  # fmt: skip
 
     with np.errstate(all="ignore"):
-        over_threads(work, pieces.blocks, 1 + pieces.designs // DESIGNS_PER_THREAD, threads)
-    return places[:, : pieces.designs]
+        over_threads(work, blocks, 1 + len(counts) // DESIGNS_PER_THREAD, threads)
+    return places.reshape(2, len(counts), most, zeros.MOST_ZEROS)
 
 
 @cache

@@ -10,8 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from linksweep.engine.patience import Patience
-from linksweep.engine.peaks import abreast, on_pieces, search
-from linksweep.engine.peaks.brackets import BRACKET_ROWS
+from linksweep.engine.peaks import abreast, search
 from linksweep.engine.peaks.evaluators import FAR_WIDTH, NEAR_WIDTH, Evaluators, Functions
 from linksweep.engine.run import Fields, Sizes, flat, ordered
 from linksweep.engine.trace.plan import Plan
@@ -42,7 +41,8 @@ def searcher(plan: Plan, signals: tuple[str, ...]) -> Searcher:
 
 
 class LaidOut(NamedTuple):
-    """Designs of a plan, counted row-major over its loops, and the functions that evaluate `signals` of them."""
+    """Designs of a plan, counted row-major over the `dims` of its evaluators, and the functions that evaluate `signals`
+    of them."""
 
     signals: tuple[str, ...]
     functions: Functions
@@ -79,18 +79,14 @@ class LaidOut(NamedTuple):
             np.zeros((4 * self.half + 1) * len(self.signals) * lanes),
         )  # fmt: skip
 
-    def arguments_of_pieces(self, blocks: int, pieces: int) -> tuple[Any, ...]:
-        """Return the arguments of a search of `on_pieces` that follow the lanes, but the results, with new arrays to
-        work in: for groups of designs of so many blocks, and so many pieces, at most."""
-        lanes, signals, constants = self.lanes, len(self.signals), self.functions.constants * self.lanes
+    def arguments_of_pieces(self, together: int) -> tuple[Any, ...]:
+        """Return those of searches of the pieces of `together` blocks of designs: a row of them for each piece."""
+        lanes, pieces = self.lanes, together * self.shape[0]
         return (
             np.array(self.shape, dtype=np.int64), *self.parameters, grades(self.half), *self.functions.passed,
-            np.zeros((blocks, constants)),
-            np.zeros((blocks, 2 * (2 * self.half + 2) * lanes)),
-            np.zeros((blocks, (4 * self.half + 1) * signals * lanes)),
-            np.zeros((abreast.STATE_ROWS, signals * lanes)), np.zeros((abreast.STATE_ROWS, lanes)),
-            np.zeros(pieces * signals), np.zeros((on_pieces.SUMMIT_ROWS, pieces * signals)),
-            np.zeros((BRACKET_ROWS, abreast.ROOM)), self.gathered,
+            np.zeros((pieces, self.functions.constants * lanes)),
+            np.zeros((pieces, 2 * (2 * self.half + 2) * lanes)),
+            np.zeros((pieces, (4 * self.half + 1) * len(self.signals) * lanes)),
         )  # fmt: skip
 
     @property
@@ -102,8 +98,8 @@ class LaidOut(NamedTuple):
 def laid_out(plan: Plan, inputs: Fields, sizes: Sizes, half: int = search.HALF) -> LaidOut:
     """Return the designs of a plan, whose outputs are signals, all with the same dims, and widths of near-toggles."""
     signals = tuple(name for name in plan.outputs if name not in WIDTHS)
-    ready, shape = searcher(plan, signals), tuple(sizes[dim] for dim in plan.loops)
-    nodes = ready.evaluators.inputs
+    ready = searcher(plan, signals)
+    nodes, shape = ready.evaluators.inputs, tuple(sizes[dim] for dim in ready.evaluators.dims)
     parameters, parameter_at = flat([ordered(plan, inputs[node.value]) for node in nodes])
     functions = ready.functions(math.prod(shape))
     return LaidOut(signals, functions, shape, (parameters, parameter_at[:-1]), half)

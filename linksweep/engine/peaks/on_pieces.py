@@ -1,4 +1,4 @@
-"""Search for the peaks of designs on their pieces, several pieces side by side, one in each lane.
+"""Search for the peaks of designs on their pieces, several designs side by side, one in each lane.
 
 A turn follows each piece there and back, so the samples on the way there show everything. Those of all pieces of a few
 designs are taken first, and the best summit of each signal on each piece noted. Only a summit that may exceed all other
@@ -30,9 +30,11 @@ from linksweep.engine.peaks.brackets import BEYOND, PEAK
 from linksweep.engine.peaks.search import FEW, HALF
 from linksweep.engine.peaks.stragglers import open_brackets
 
+OF_PIECE = EVALUATIONS + 1
+"""Row of `best` after those of a peak: the number of the piece."""
 # rows of `summits`: piece, signal, and place in `highest`; the best summit's number, the heights that it and any other
 # may reach
-PIECE, SIGNAL, OF_DESIGN, AT, HEIGHT, NEXT = range(6)
+PLACE, SIGNAL, OF_DESIGN, AT, HEIGHT, NEXT = range(6)
 SUMMIT_ROWS = 6
 HIDDEN = 0.1
 """Most that a signal may rise between a sample and its neighbours if these are as high, relative to the fall to the
@@ -46,53 +48,70 @@ compare_closely = close_comparison_of_half(HALF)
 
 
 def search(
-    first, last, bounds, owners, lanes, sizes, parameters, parameter_at, grades, prepare, share, sample, evaluate,
-    constants, x, rows, state, trials, highest, summits, brackets, gathered, best
+    first, last, together, lanes, counts, sizes, parameters, parameter_at, grades, prepare, enter, sample, evaluate,
+    constants, x, rows, state, trials, highest, summits, brackets, gathered, found, best
 ):  # fmt: skip
-    """Write the peaks of groups `first` … `last` of designs to `best`: a column for each piece of each signal, one
-    signal after the other.
+    """Write the peaks of blocks `first` … `last` of designs, so many `together`, to `best`: a column for each design of
+    each signal, one signal after the other.
 
-    A group has the pieces between two `bounds`; `owners` are their designs, in order.
+    `counts` are the numbers of the designs' pieces. Those of a block are searched one after the other: a row of
+    `constants` and of other tables for each, and in `found` a column for each piece of each signal.
     """
-    columns, half = state.shape[1], grades.shape[1] - 1
-    signals = columns // lanes
-    width = best.shape[1] // signals
-    for group in range(first, last):
-        start, stop = bounds[group], bounds[group + 1]
-        for k in range((owners[stop - 1] - owners[start] + 1) * signals):
+    designs, pieces, columns, half = len(counts), len(constants) // together, state.shape[1], grades.shape[1] - 1
+    for start in range(first, last, together):
+        stop, count = min(start + together, last), 0
+        for k in range(len(highest)):
             highest[k] = -math.inf
-        count = 0
-        for block in range((stop - start + lanes - 1) // lanes):
-            front = start + block * lanes
-            call(prepare, (front, stop, sizes, parameters, parameter_at, constants[block]))
-            if place_samples(constants[block], lanes, grades, x[block]) > 0:
-                call(share, (constants[block], x[block]))
-            call(sample, (constants[block], x[block], rows[block]))
-            if half == FEW:
-                compare_samples_of_few(rows[block, (FEW - 1) * columns :], 2 * FEW + 4, state, columns)
-            elif narrowest(constants[block], lanes) < NARROW:
-                compare_closely(rows[block, (HALF - 1) * columns :], 2 * HALF + 4, state, columns)
-            else:
-                compare_samples_of_half(rows[block, (HALF - 1) * columns :], 2 * HALF + 4, state, columns)
-            for signal in range(signals):
-                for lane in range(min(lanes, stop - front)):
-                    piece, k = front + lane, signal * lanes + lane
-                    of_design, tag = (owners[piece] - owners[start]) * signals + signal, signal * width + piece
-                    value, height = rows[block, int(state[SUMMIT, k]) * columns + k], math.inf
-                    if state[REACH, k] > -math.inf:  # else nothing is known
-                        height = max(state[REACH, k], hidden_height(rows[block], int(state[SUMMIT, k]), columns, k))
-                    if value > highest[of_design]:
-                        highest[of_design] = value
-                    summits[PIECE, count], summits[SIGNAL, count] = piece, signal
-                    summits[OF_DESIGN, count], summits[AT, count] = of_design, state[SUMMIT, k]
-                    summits[HEIGHT, count], summits[NEXT, count] = height, state[OTHER, k]
-                    best[PEAK, tag], best[BEYOND, tag], best[EVALUATIONS, tag] = value, 0.0, 4 * half
-                    count += 1
+        for block in range(start, stop):
+            front = block * lanes
+            for piece in range(most_pieces(counts, front, lanes)):
+                row = (block - start) * pieces + piece
+                sample_piece(
+                    front, piece, designs, lanes, sizes, parameters, parameter_at, grades, prepare, enter, sample,
+                    constants, x, rows, row,
+                )  # fmt: skip
+                compare(rows[row], columns, half, narrowest(constants[row], lanes), state)
+                for lane in range(min(lanes, designs - front)):
+                    if piece < counts[front + lane]:
+                        place, own = row * lanes + lane, (block - start) * lanes + lane
+                        count = note_summits(rows[row], state, lanes, place, half, own, highest, summits, count, found)
         count = drop_lower(summits, count, highest)
-        confirm(
-            start, count, lanes, half, width, evaluate, constants, x, rows, columns, trials, summits, brackets,
-            gathered, best
-        )  # fmt: skip
+        confirm(count, lanes, half, evaluate, constants, x, rows, columns, trials, summits, brackets, gathered, found)
+        for design in range(start * lanes, min(stop * lanes, designs)):
+            place = (design // lanes - start) * pieces * lanes + design % lanes
+            keep_highest(found, place, lanes, counts[design], best, design, designs)
+
+
+def most_pieces(counts, front, lanes):
+    """Return the largest number of pieces of designs side by side."""
+    most = 0
+    for design in range(front, min(front + lanes, len(counts))):
+        most = max(most, counts[design])
+    return most
+
+
+def sample_piece(
+    front, piece, designs, lanes, sizes, parameters, parameter_at, grades, prepare, enter, sample, constants, x, rows,
+    row
+):  # fmt: skip
+    """Sample a piece of designs side by side: in a row of these tables, after those of their pieces before."""
+    if piece == 0:
+        call(prepare, (front, designs, sizes, parameters, parameter_at, constants[row]))
+    for k in range(constants.shape[1] if piece > 0 else 0):
+        constants[row, k] = constants[row - piece, k]
+    call(enter, (front, piece, sizes, parameters, parameter_at, constants[row]))
+    place_samples(constants[row], lanes, grades, x[row])
+    call(sample, (constants[row], x[row], rows[row]))
+
+
+def compare(rows, columns, half, width, state):
+    """Note the best summit of each signal on pieces side by side, and how high that and any other may reach."""
+    if half == FEW:
+        compare_samples_of_few(rows[(FEW - 1) * columns :], 2 * FEW + 4, state, columns)
+    elif width < NARROW:
+        compare_closely(rows[(HALF - 1) * columns :], 2 * HALF + 4, state, columns)
+    else:
+        compare_samples_of_half(rows[(HALF - 1) * columns :], 2 * HALF + 4, state, columns)
 
 
 def narrowest(constants, lanes):
@@ -101,6 +120,25 @@ def narrowest(constants, lanes):
     for k in range(2 * lanes):
         least = min(least, constants[k])
     return least
+
+
+def note_summits(rows, state, lanes, place, half, design, highest, summits, count, found):
+    """Note the best summit of each signal on a piece, and its highest sample; return how many summits there are."""
+    columns, lane = state.shape[1], place % lanes
+    signals = columns // lanes
+    width = found.shape[1] // signals
+    for signal in range(signals):
+        k, tag, of_design = signal * lanes + lane, signal * width + place, design * signals + signal
+        value, height = rows[int(state[SUMMIT, k]) * columns + k], math.inf
+        if state[REACH, k] > -math.inf:  # else nothing is known
+            height = max(state[REACH, k], hidden_height(rows, int(state[SUMMIT, k]), columns, k))
+        if value > highest[of_design]:
+            highest[of_design] = value
+        summits[PLACE, count], summits[SIGNAL, count], summits[OF_DESIGN, count] = place, signal, of_design
+        summits[AT, count], summits[HEIGHT, count], summits[NEXT, count] = state[SUMMIT, k], height, state[OTHER, k]
+        found[PEAK, tag], found[BEYOND, tag], found[EVALUATIONS, tag] = value, 0.0, 4 * half
+        count += 1
+    return count
 
 
 def hidden_height(rows, at, columns, k):
@@ -122,34 +160,57 @@ def drop_lower(summits, count, highest):
     return kept
 
 
-def confirm(
-    start, count, lanes, half, width, evaluate, constants, x, rows, columns, trials, summits, brackets, gathered, best
-):
+def confirm(count, lanes, half, evaluate, constants, x, rows, columns, trials, summits, brackets, gathered, found):
     """Write the peaks about summits: those that trials confirm, or else those of brackets."""
-    opened = 0
+    width, opened = len(constants) * lanes, 0
     for front in range(0, count, lanes):
         for lane in range(lanes):
             k = min(front + lane, count - 1)
-            piece, signal = int(summits[PIECE, k]) - start, int(summits[SIGNAL, k])
-            block, its = piece // lanes, piece % lanes
-            for row in range(len(gathered) // lanes):
-                gathered[row * lanes + lane] = constants[block, row * lanes + its]
+            row, its = int(summits[PLACE, k]) // lanes, int(summits[PLACE, k]) % lanes
+            signal = int(summits[SIGNAL, k])
+            for number in range(len(gathered) // lanes):
+                gathered[number * lanes + lane] = constants[row, number * lanes + its]
             trials[SUMMIT, lane], trials[OTHER, lane], trials[NUMBER, lane] = summits[AT, k], summits[NEXT, k], signal
-            pick_sample(rows[block], x[block], half, lanes, columns, signal * lanes + its, its, lane, trials)
+            pick_sample(rows[row], x[row], half, lanes, columns, signal * lanes + its, its, lane, trials)
         try_vertices(gathered, trials, lanes, lanes, evaluate)
         for lane in range(min(lanes, count - front)):
-            piece, signal = int(summits[PIECE, front + lane]), int(summits[SIGNAL, front + lane])
-            block, its, tag = (piece - start) // lanes, (piece - start) % lanes, signal * width + piece
-            for row in range(len(best)):
-                best[row, tag] = trials[row, lane]
-            best[EVALUATIONS, tag] += 4 * half
+            place, signal = int(summits[PLACE, front + lane]), int(summits[SIGNAL, front + lane])
+            row, its, tag = place // lanes, place % lanes, signal * width + place
+            for number in range(len(found)):
+                found[number, tag] = trials[number, lane]
+            found[EVALUATIONS, tag] += 4 * half
             if trials[FINAL, lane] == 0.0:
                 if opened + 2 * half > brackets.shape[1]:
-                    refine(brackets, opened, lanes, width, start, constants, gathered, evaluate, best)
+                    refine(brackets, opened, lanes, width, 0, constants, gathered, evaluate, found)
                     opened = 0
                 known = int(trials[SUMMIT, lane]) if trials[CONFIRMED, lane] > 0.0 else -1
                 opened = open_brackets(
-                    rows[block], x[block], half, lanes, columns, signal * lanes + its, its, known, True, signal, tag,
-                    brackets, opened, best,
+                    rows[row], x[row], half, lanes, columns, signal * lanes + its, its, known, True, signal, tag,
+                    brackets, opened, found,
                 )  # fmt: skip
-    refine(brackets, opened, lanes, width, start, constants, gathered, evaluate, best)
+    refine(brackets, opened, lanes, width, 0, constants, gathered, evaluate, found)
+
+
+def keep_highest(found, place, lanes, pieces, best, design, designs):
+    """Write the highest peak of each signal on the pieces of a design, of equal ones the first; NaN where there is
+    none."""
+    signals = best.shape[1] // designs
+    width = found.shape[1] // signals
+    for signal in range(signals):
+        winner, of_piece, reach, evaluations = -1, 0, -math.inf, 0.0
+        for piece in range(pieces):
+            k = signal * width + place + piece * lanes
+            value = found[PEAK, k]
+            evaluations += found[EVALUATIONS, k]
+            if value + found[BEYOND, k] > reach:
+                reach = value + found[BEYOND, k]
+            if value == value and (winner < 0 or value > found[PEAK, max(winner, 0)]):
+                winner, of_piece = k, piece
+        tag = signal * designs + design
+        for row in range(len(best)):
+            best[row, tag] = math.nan
+        if winner >= 0:
+            for row in range(len(found)):
+                best[row, tag] = found[row, winner]
+            best[BEYOND, tag] = reach - best[PEAK, tag] if abs(best[PEAK, tag]) < math.inf else 0.0
+            best[EVALUATIONS, tag], best[OF_PIECE, tag] = evaluations, float(of_piece)

@@ -1,4 +1,4 @@
-"""Find the zeros of a signal on pieces of the turn, several pieces side by side, one in each lane.
+"""Find the zeros of a signal on pieces of the turn, those of several designs side by side, one in each lane.
 
 The signal is evaluated at the samples on the way from a piece's start to its end. Neighbours of opposite signs bracket
 a zero, and so do a sample that is nearest to zero and the vertex of the parabola about it, where that lies beyond. The
@@ -10,7 +10,7 @@ Source: Dowell and Jarratt, A modified regula falsi method, BIT 11 (1971).
 """
 
 from linksweep.engine.kernel.instructions import call
-from linksweep.engine.peaks.abreast import BLOCKS, place_samples
+from linksweep.engine.peaks.on_pieces import most_pieces, sample_piece
 
 MOST_ZEROS = 12
 """Zeros of one piece, at most."""
@@ -20,45 +20,52 @@ CLOSED = 1e-15
 """Step, as a tangent, that ends the search for a zero."""
 
 # rows of `zeros_at`: two ends of each bracket with their values, a trial with its value; half turn, number of the
-# signal, column of `zeros`; whether the bracket holds a zero
+# signal, row and lane of the piece; whether the bracket holds a zero
 START, AT_START, STOP, AT_STOP, TRIAL, AT_TRIAL, SIDE, SIGNAL_NUMBER, OWNER, HOLDS = range(10)
 ZERO_ROWS = 10
 UNKNOWN, NONE, OPEN, FOUND = range(4)
 
 
 def find_zeros(
-    first, last, designs, lanes, sizes, parameters, parameter_at, grades, prepare, share, sample, evaluate, constants,
-    x, rows, zeros_at, gathered, zeros
+    first, last, together, lanes, counts, sizes, parameters, parameter_at, grades, prepare, enter, sample, evaluate,
+    constants, x, rows, zeros_at, gathered, zeros
 ):  # fmt: skip
-    """Write the zeros of pieces in blocks `first` … `last` to `zeros` (number, piece, nth): tangents, half turns."""
-    for start in range(first, last, BLOCKS):
+    """Write the zeros of the pieces of designs in blocks `first` … `last`, so many `together`, to `zeros` (number,
+    piece of all, nth): tangents, half turns. `counts` are the numbers of the designs' pieces."""
+    designs, pieces = len(counts), len(constants) // together
+    for start in range(first, last, together):
         count = 0
-        for block in range(start, min(start + BLOCKS, last)):
-            own = constants[block - start]
-            call(prepare, (block * lanes, designs, sizes, parameters, parameter_at, own))
-            if place_samples(own, lanes, grades, x) > 0:
-                call(share, (own, x))
-            call(sample, (own, x, rows))
-            for lane in range(lanes):
-                owner = block * lanes + lane
-                count = open_zeros(rows, x, grades.shape[1] - 1, lanes, lane, owner, zeros_at, count)
-        evaluate_trials(zeros_at, count, lanes, start, constants, gathered, evaluate)
+        for block in range(start, min(start + together, last)):
+            front = block * lanes
+            for piece in range(most_pieces(counts, front, lanes)):
+                row = (block - start) * pieces + piece
+                sample_piece(
+                    front, piece, designs, lanes, sizes, parameters, parameter_at, grades, prepare, enter, sample,
+                    constants, x, rows, row,
+                )  # fmt: skip
+                for lane in range(min(lanes, designs - front)):
+                    if piece < counts[front + lane]:
+                        count = open_zeros(
+                            rows[row], x[row], grades.shape[1] - 1, lanes, row * lanes + lane, zeros_at, count
+                        )
+        evaluate_trials(zeros_at, count, lanes, constants, gathered, evaluate)
         keep_vertices(zeros_at, count)
-        count = drop_closed(zeros_at, count, zeros)
+        count = drop_closed(zeros_at, count, start, lanes, pieces, zeros)
         for _ in range(STEPS):
             if count == 0:
                 break
             for k in range(count):
                 zeros_at[TRIAL, k] = false_position(zeros_at, k)
-            evaluate_trials(zeros_at, count, lanes, start, constants, gathered, evaluate)
+            evaluate_trials(zeros_at, count, lanes, constants, gathered, evaluate)
             for k in range(count):
                 narrow(zeros_at, k)
-            count = drop_closed(zeros_at, count, zeros)
+            count = drop_closed(zeros_at, count, start, lanes, pieces, zeros)
 
 
-def open_zeros(rows, x, half, lanes, lane, owner, zeros_at, count):
-    """Open brackets of zeros between samples of a lane, and beside samples that are nearest to zero; return their
+def open_zeros(rows, x, half, lanes, owner, zeros_at, count):
+    """Open brackets of zeros between samples of a piece, and beside samples that are nearest to zero; return their
     number."""
+    lane = owner % lanes
     for j in range(half, 3 * half):
         far = j // (2 * half)
         at = (j + 1 + 2 * far) * lanes + lane
@@ -88,12 +95,12 @@ def open_zero(zeros_at, count, start, at_start, stop, at_stop, trial, half, owne
     return count + 1
 
 
-def evaluate_trials(zeros_at, count, lanes, start, constants, gathered, evaluate):
+def evaluate_trials(zeros_at, count, lanes, constants, gathered, evaluate):
     """Evaluate the signal at the trials of all brackets."""
     for front in range(0, count, lanes):
         for lane in range(lanes):
             owner = int(zeros_at[OWNER, min(front + lane, count - 1)])
-            own, its = constants[owner // lanes - start], owner % lanes
+            own, its = constants[owner // lanes], owner % lanes
             for row in range(len(gathered) // lanes):
                 gathered[row * lanes + lane] = own[row * lanes + its]
         call(evaluate, (gathered, zeros_at, TRIAL, AT_TRIAL, SIDE, SIGNAL_NUMBER, front, front + lanes))
@@ -126,12 +133,14 @@ def narrow(zeros_at, k):
     zeros_at[STOP, k], zeros_at[AT_STOP, k] = zeros_at[TRIAL, k], value
 
 
-def drop_closed(zeros_at, count, zeros):
+def drop_closed(zeros_at, count, start, lanes, pieces, zeros):
     """Note the zeros that are found; return how many brackets remain."""
     still_open = 0
     for k in range(count):
         if zeros_at[HOLDS, k] == FOUND:
-            note_zero(zeros, int(zeros_at[OWNER, k]), zeros_at[STOP, k], zeros_at[SIDE, k])
+            row, lane = int(zeros_at[OWNER, k]) // lanes, int(zeros_at[OWNER, k]) % lanes
+            design = (start + row // pieces) * lanes + lane
+            note_zero(zeros, design * pieces + row % pieces, zeros_at[STOP, k], zeros_at[SIDE, k])
         elif zeros_at[HOLDS, k] == OPEN:
             for row in range(ZERO_ROWS):
                 zeros_at[row, still_open] = zeros_at[row, k]

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
 from linksweep.engine.quantity import Table
-from linksweep.engine.run import Field, Fields, evaluate
+from linksweep.engine.run import Fields, evaluate
 from linksweep.engine.trace.plan import InputForms, Plan, plan
 from linksweep.scene.dimensions import aligned
 from linksweep.scene.pairs import Array, inputs_along, places_of, quantities_at
@@ -28,11 +27,11 @@ def one_by_one(
     designs: Array,
     table: Table,
     names: tuple[str, ...],
-    own: Mapping[str, Array],
+    own: Fields,
     places: InputForms,
 ) -> tuple[Plan, Fields]:
-    """Return the plan of quantities of a table between samples, and its inputs along the dim `ONE`: a value for each of
-    these designs, and `own` ones besides; `places` are the forms of the search's own inputs. Those that change over the
+    """Return the plan of quantities of a table between samples, and its inputs: a value for each of these designs along
+    the dim `ONE`, and `own` ones besides; `places` are the forms of the search's own inputs. Those that change over the
     angle are left to the table."""
     inputs, index = scene.at_one_angle.inputs, scene.mechanism.index
     forms = tuple(
@@ -40,9 +39,9 @@ def one_by_one(
         for name, form in inputs.forms
         if not (isinstance(form, tuple) and index in form)
     )
-    request = plan(table, names, (*forms, *((name, (ONE,)) for name in own), *places))
+    request = plan(table, names, (*forms, *((name, field.dims) for name, field in own.items()), *places))
     fields = inputs_along(ONE, request, inputs, places_of(inputs.sizes, designs))
-    return request, fields | {name: Field((ONE,), values) for name, values in own.items()}
+    return request, {**fields, **own}
 
 
 def number_of(scene: Scene, number: Any, designs: Array) -> Array:

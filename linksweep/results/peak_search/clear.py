@@ -11,10 +11,11 @@ from functools import lru_cache
 
 import numpy as np
 
-from linksweep.engine.peaks.evaluators import ALONG, END, FAR, FAR_WIDTH, NEAR_WIDTH, TANGENT
+from linksweep.engine.peaks.evaluators import ALONG, END, FAR, FAR_WIDTH, NEAR_WIDTH, PIECE, TANGENT
 from linksweep.engine.peaks.find_peaks import clearances, zeros_of_pieces
+from linksweep.engine.peaks.search import HALF
 from linksweep.engine.quantity import Limit, Row, Table
-from linksweep.engine.run import Fields
+from linksweep.engine.run import Field, Fields
 from linksweep.engine.trace.plan import Plan
 from linksweep.physics.algebra import planar
 from linksweep.physics.algebra.arithmetic import Number
@@ -32,10 +33,10 @@ STEP = 0.05
 """Least step of the samples of a turn that comes near no toggle [rad]."""
 FASTEST = 3.0
 """Turns of a wheel per turn of the crank up to which these samples suffice."""
-PIECE = 30.0
+LENGTH = 30.0
 """Length of the pieces on which a slide's changes of direction are sampled [degree]: 48 samples tell those apart that
 lie a degree from each other, as at a toggle joint that is stretched."""
-STARTS = PIECE * (np.arange(12.0) + 0.381966)
+STARTS = LENGTH * (np.arange(12.0) + 0.381966)
 """Their starts: off round angles, where machines have such changes [degree]."""
 WIDTH = "turn_width"
 """Input that takes the place of the widths of near-toggles."""
@@ -60,7 +61,7 @@ def clear_designs(scene: Scene, limits: tuple[Limit, ...], designs: Array) -> tu
 def _all_move(scene: Scene, limits: tuple[Limit, ...], designs: Array) -> bool:
     """Return whether the signals of all limits change with the angle: not where parts of a linkage stand still."""
     names, one = [name for limit in limits for name in limit.signals], designs[:1]
-    request, _ = _evaluated(scene, limits, one, names, {WIDTH: np.ones(len(one))}, ON_TURN)
+    request, _ = _evaluated(scene, limits, one, names, {WIDTH: Field((ONE,), np.ones(len(one)))}, ON_TURN)
     return all(scene.mechanism.index in request.outputs[name].dims for name in names)
 
 
@@ -71,7 +72,7 @@ def _clear_rows(
     parts = [(np.empty(0, dtype=int), np.empty(0), np.empty(0, dtype=int))]
     far = [f"clear_{limit.name}_{name}" for limit in limits if limit.zeros != "jump" for name in limit.signals]
     if far and len(rows):
-        own = {WIDTH: np.ones(len(rows))}
+        own = {WIDTH: Field((ONE,), np.ones(len(rows)))}
         least, dip = clearances(*_evaluated(scene, limits, designs[rows], far, own, ON_TURN), {ONE: len(rows)}, None)
         rows = rows[(least > 0.0).all(axis=0) & (dip > (WIDE / STEP) ** 2).all(axis=0)]
     for k, limit in enumerate(limits):
@@ -84,19 +85,18 @@ def _clear_rows(
 
 def _changes_of_sign(scene: Scene, limits: tuple[Limit, ...], designs: Array, signal: str) -> tuple[Array, Array]:
     """Return the row of the design and the angle [degree] of each zero of a signal, which may lie close together."""
-    row, count = np.repeat(np.arange(len(designs)), len(STARTS)), len(designs) * len(STARTS)
-    start = np.tile(STARTS, len(designs))
-    half = np.floor(np.mod(start + 0.5 * PIECE + 90.0, 360.0) / 180.0)
-    ends = [np.tan(np.radians(0.5 * (start + length - 180.0 * half))) for length in (0.0, PIECE)]
-    own = {WIDTH: np.ones(count), ENDS[0]: ends[0], ENDS[1]: ends[1], HALF_TURN: half}
-    request, fields = _evaluated(scene, limits, designs[row], [signal], own, ON_PIECE)
-    tangent, of_end = zeros_of_pieces(request, fields, {ONE: count}, None)
-    piece, nth = np.nonzero(np.isfinite(tangent))
-    share = np.sin(np.arctan(tangent[piece, nth])) ** 2
-    share = np.where(of_end[piece, nth] > 0.0, 1.0 - share, share)
+    half = np.floor(np.mod(STARTS + 0.5 * LENGTH + 90.0, 360.0) / 180.0)
+    ends = [np.tan(np.radians(0.5 * (STARTS + length - 180.0 * half))) for length in (0.0, LENGTH)]
+    own = {WIDTH: Field((ONE,), np.ones(len(designs)))}
+    own |= {name: Field((PIECE,), values) for name, values in zip((*ENDS, HALF_TURN), (*ends, half), strict=True)}
+    request, fields = _evaluated(scene, limits, designs, [signal], own, ON_PIECE)
+    tangent, of_end = zeros_of_pieces(request, fields, ONE, np.full(len(designs), len(STARTS)), HALF, None)
+    row, piece, nth = np.nonzero(np.isfinite(tangent))
+    share = np.sin(np.arctan(tangent[row, piece, nth])) ** 2
+    share = np.where(of_end[row, piece, nth] > 0.0, 1.0 - share, share)
     x = ends[0][piece] + (ends[1] - ends[0])[piece] * share
-    middle = number_of(scene, scene.mechanism.near_toggle_angle, designs)[row[piece]]
-    return row[piece], np.mod(2.0 * np.degrees(np.arctan(x)) + 180.0 * half[piece] + middle, 360.0)
+    middle = number_of(scene, scene.mechanism.near_toggle_angle, designs)[row]
+    return row, np.mod(2.0 * np.degrees(np.arctan(x)) + 180.0 * half[piece] + middle, 360.0)
 
 
 def _evaluated(
@@ -104,12 +104,13 @@ def _evaluated(
     limits: tuple[Limit, ...],
     designs: Array,
     names: list[str],
-    own: dict[str, Array],
+    own: Fields,
     places: tuple[str, str],
 ) -> tuple[Plan, Fields]:
-    """Return the plan of quantities of designs at samples of a turn, or of a piece, and its inputs."""
-    table, index = _table(scene.table, limits, places == ON_PIECE), scene.mechanism.index
-    forms = ((places[0], (index, ONE)), (places[1], (index,)))
+    """Return the plan of quantities of designs at samples of a turn, or of its pieces, and its inputs."""
+    on_piece, index = places == ON_PIECE, scene.mechanism.index
+    forms = ((places[0], (index, ONE, PIECE) if on_piece else (index, ONE)), (places[1], (index,)))
+    table = _table(scene.table, limits, on_piece)
     return one_by_one(scene, designs, table, (*names, NEAR_WIDTH, FAR_WIDTH), own, forms)
 
 

@@ -45,12 +45,12 @@ from linksweep.results.peak_search.pieces import (
     designs_without_jams,
     divides,
     follow_pieces,
-    follow_unbounded,
     known_on_pieces,
     rubbing_signals,
     turning_without_jams,
 )
 from linksweep.results.peak_search.poles import designs_with_candidates, may_have_poles
+from linksweep.results.peak_search.unbounded import follow_unbounded
 from linksweep.scene.dimensions import aligned
 from linksweep.scene.grid import NAMES as GRID_ROWS
 from linksweep.scene.pairs import Array, changes, in_period

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from functools import singledispatch
 from itertools import chain
 from typing import Any, NamedTuple
@@ -85,7 +85,7 @@ class Group(NamedTuple):
         return self.limits.zeros_of(self.scene.table.limits or (), kind)
 
     def one_by_one(
-        self, table: Table, names: tuple[str, ...], rows: Array, own: Mapping[str, Array], places: InputForms
+        self, table: Table, names: tuple[str, ...], rows: Array, own: Fields, places: InputForms
     ) -> tuple[Plan, Fields]:
         """Return `one_by_one` of the designs in these rows of the group."""
         return one_by_one(self.scene, self.designs[rows], table, names, own, places)

@@ -2,35 +2,35 @@
 
 The direction of sliding is known on each piece, so that all signals are smooth there, ends included. A piece also ends
 at each narrow near-toggle, so that its samples can be dense about it, and where a half turn does. Loads over the angle
-are polynomials: of tables between their knots, of which a piece has a few, and of functions on the whole piece. Pieces
-of many designs are searched side by side, each as a turn that follows it there and back.
+are polynomials: of tables between their knots, of which a piece has a few, and of functions on the whole piece. Designs
+are searched side by side, piece by piece, each piece as a turn that follows it there and back.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 
-from linksweep.engine.peaks.evaluators import ALONG, END, FAR, FAR_WIDTH, NEAR_WIDTH, TANGENT
-from linksweep.engine.peaks.find_peaks import PeaksOnPieces, find_peaks_on_pieces, zeros_of_pieces
+from linksweep.engine.peaks.evaluators import ALONG, END, FAR, FAR_WIDTH, NEAR_WIDTH, PIECE, TANGENT
+from linksweep.engine.peaks.find_peaks import find_peaks_on_pieces, zeros_of_pieces
 from linksweep.engine.peaks.search import FEW, HALF
 from linksweep.engine.quantity import Row, Table
-from linksweep.engine.run import Fields, evaluate
+from linksweep.engine.run import Field, Fields, evaluate
 from linksweep.engine.trace.plan import Plan, plan
 from linksweep.physics.algebra import planar
 from linksweep.physics.closures import crank_angle
 from linksweep.results.peak_search.along_paths import SignalPeak, angle_in_period, put
-from linksweep.results.peak_search.arcs import NEAREST, arc_ends
 from linksweep.results.peak_search.between import EVERYWHERE, ONE
 from linksweep.results.peak_search.clear import ENDS, FASTEST, HALF_TURN
 from linksweep.results.peak_search.groups import Group, all_at_once, groups
 from linksweep.results.peak_search.paths import distinct
 from linksweep.results.peak_search.poles import singular_angles
 from linksweep.scene.curves.polynomials import Polynomials, polynomials
+from linksweep.scene.dimensions import aligned
 from linksweep.scene.pairs import Array, by_row, places_of
 from linksweep.scene.scene import Scene
 
@@ -50,33 +50,41 @@ BORDERS = np.array([90.0, 270.0])
 """Ends of half turns, from the near-toggle [degree]."""
 BEYOND = 30.0
 """How far a piece may reach beyond its half turn, rather than be cut at the border [degree]."""
-PROBES = np.array([1e-4, 1e-5])
-"""Distances from a toggle, in x of an arc, of the samples that show whether a signal is unbounded."""
-BESIDE_TOGGLE = 0.03
-"""Part of an arc that is a piece of its own beside each toggle."""
-LEAST_GROWTH, LARGE = 5.0, 1e3
-"""Growth from the one to the other, and over the middle of the arc, of an unbounded signal."""
+
+Numbers = tuple[Array, ...]
+"""Of a signal's peak: value, angle [degree], bound and samples, a number for each design."""
 
 
 class Pieces(NamedTuple):
-    """Pieces of the turns of designs, in their order: row of the design in its group, start and end, as angles from the
-    near-toggle [degree]; directions of sliding (direction, piece); and what limits the widths of peaks about its ends
-    (end, piece), as tangents of half the angle that follows the piece."""
+    """Pieces of the turns of designs, in their order.
 
-    row: Array
+    `start` and `end` (design, piece) are angles from the near-toggle [degree], in one row where all designs share them;
+    `half` is 0 or 1 for the half turn in which, or about which, a piece lies. A design with fewer pieces than others,
+    as `counts` tells, goes on with its first. `directions` are those of sliding (direction, design, piece); `widths`
+    limit the widths of peaks about the ends (end, design, piece), as tangents of half the angle that follows the piece.
+    """
+
     start: Array
     end: Array
+    half: Array
+    counts: Array
     directions: Array
     widths: Array | float = 1.0
 
     @property
-    def half(self) -> Array:
-        """0 or 1 for the half turn in which, or about which, each piece lies."""
-        return np.floor(np.mod(0.5 * (self.start + self.end) + 90.0, 360.0) / 180.0)
+    def exist(self) -> Array:
+        """Whether pieces (design, piece) are a design's own, and do not only fill up its row."""
+        return np.arange(self.start.shape[1]) < self.counts[:, None]
 
-    def tangents(self, half: Array, angle: Array) -> Array:
-        """Return the tangents of half the angles from the middles of these half turns."""
-        away = np.mod(angle - 180.0 * half + 180.0, 360.0) - 180.0
+    def some(self, rows: Array) -> Pieces:
+        """Return the pieces of the designs in these rows."""
+        start, end, half = (x if len(x) < len(self.counts) else x[rows] for x in self[:3])
+        widths = self.widths if isinstance(self.widths, float) else self.widths[:, rows]
+        return Pieces(start, end, half, self.counts[rows], self.directions[:, rows], widths)
+
+    def tangents(self, angle: Array) -> Array:
+        """Return the tangents of half the angles from the middles of half turns."""
+        away = np.mod(angle - 180.0 * self.half + 180.0, 360.0) - 180.0
         return np.tan(np.radians(0.5 * away))
 
 
@@ -122,11 +130,9 @@ def follow_pieces(scene: Scene, designs: Array, peaks: dict[str, SignalPeak], th
     at_once = AT_ONCE if scene.steady else LOADED_AT_ONCE
     for whole in groups(scene, tuple(peaks), designs, at_once, at_once) if peaks else ():
         for half, group in _by_samples(whole):
-            pieces = _pieces(group, threads)
-            request, inputs = _evaluated(group, pieces, tuple(peaks))
-            results = find_peaks_on_pieces(request, tuple(peaks), inputs, ONE, pieces.row, half, threads)
-            for signal, peak in peaks.items():
-                put(peak, group, _highest(group, pieces, inputs, results[signal]))
+            found = highest_on_pieces(group, _pieces(group, half, threads), tuple(peaks), half, threads)
+            for signal, numbers in found.items():
+                put(peaks[signal], group, numbers)
 
 
 def _by_samples(group: Group) -> Iterator[tuple[int, Group]]:
@@ -138,135 +144,47 @@ def _by_samples(group: Group) -> Iterator[tuple[int, Group]]:
             yield half, group.some(some)
 
 
-def _highest(group: Group, pieces: Pieces, inputs: Fields, peak: PeaksOnPieces) -> tuple[Array, ...]:
-    """Return value, angle [degree], bound and samples of the highest peak of each design's pieces."""
-    first = np.flatnonzero(np.diff(pieces.row, prepend=-1))
-    value, height = peak.value, np.nan_to_num(peak.value, nan=-np.inf)
-    highest = np.maximum.reduceat(height, first)
-    winner = np.flatnonzero(height == highest[pieces.row])[::-1]
-    own = np.empty(len(first), dtype=int)
-    own[pieces.row[winner]] = winner  # the first of equals is written last
-    reach = np.maximum.reduceat(np.nan_to_num(value + peak.beyond, nan=-np.inf), first)
-    angle = _angles(pieces, inputs, own, peak.tangent[own], peak.end[own])
-    angle = angle_in_period(angle + group.number(group.scene.mechanism.near_toggle_angle), group.scene.period)
-    samples = np.add.reduceat(peak.evaluations, first)
-    unknown = np.isnan(value[own])
-    return tuple(np.where(unknown, np.nan, numbers) for numbers in (highest, angle, reach - highest, samples))
-
-
-# --------------------------------------------------------------------------------------------------- arcs
-
-
-def follow_unbounded(scene: Scene, designs: Array, peaks: dict[str, SignalPeak], threads: int | None) -> Array:
-    """Write the peaks of those designs that move over part of a turn, and of which all signals grow without bound at
-    all toggles, to either side; return the other designs."""
-    if not len(designs) or scene.jumps() or scene.mechanism.kinks() or scene.approaches():
-        return designs
-    regular, signals = designs_without_jams(scene, designs), tuple(peaks)
-    others = [np.setdiff1d(designs, regular, assume_unique=True)]
-    for group in groups(scene, signals, regular, AT_ONCE):
-        arcs, growth = _growth_at_toggles(group, signals, threads)
-        known = np.bincount(arcs.row, (growth == 0.0).any(axis=(0, 1)), len(group.designs)) == 0.0
-        known &= np.bincount(arcs.row, minlength=len(group.designs)) > 0
-        others.append(group.designs[~known])
-        for signal, of_signal in zip(signals, growth, strict=True):
-            upwards = np.bincount(arcs.row, (of_signal > 0.0).any(axis=0), len(group.designs)) > 0
-            _put_infinite(group, np.flatnonzero(known & upwards), peaks[signal], arcs, of_signal)
-            bounded = np.flatnonzero(known & ~upwards)
-            if len(bounded):
-                part = group.some(bounded)
-                pieces = _of_arcs(part, arcs.some(np.flatnonzero((known & ~upwards)[arcs.row]), bounded))
-                request, inputs = _evaluated(part, pieces, (signal,))
-                results = find_peaks_on_pieces(request, (signal,), inputs, ONE, pieces.row, HALF, threads)
-                put(peaks[signal], part, _highest(part, pieces, inputs, results[signal]))
-    return np.sort(np.concatenate(others))
-
-
-class Arcs(NamedTuple):
-    """Arcs of designs, in their order: row of the design in its group, start and end [degree]."""
-
-    row: Array
-    start: Array
-    end: Array
-
-    def some(self, which: Array, rows: Array) -> Arcs:
-        """Return some arcs, of designs in these rows of the group."""
-        return Arcs(np.searchsorted(rows, self.row[which]), self.start[which], self.end[which])
-
-
-def _growth_at_toggles(group: Group, signals: tuple[str, ...], threads: int | None) -> tuple[Arcs, Array]:
-    """Return the arcs of designs, and for each (signal, end, arc) 1 where the signal tends to +∞, −1 where it tends to
-    −∞, and 0 where samples do not show it."""
-    starts, ends = arc_ends(group)
-    row, nth = np.nonzero(np.isfinite(starts))
-    arcs = Arcs(row, starts[row, nth], ends[row, nth])
-    middle, half = 0.5 * (arcs.start + arcs.end), 0.5 * (arcs.end - arcs.start)
-    away = 1.0 - np.cos(PROBES)
-    shares = np.concatenate([away - 1.0, [0.0], 1.0 - away])  # the start's, the middle's, the end's
-    angles = (middle[:, None] + half[:, None] * shares).ravel()
-    values = group.values((*signals, "status"), np.repeat(row, len(shares)), angles, threads)
-    values = np.moveaxis(values.reshape(-1, len(row), len(shares)), 2, 0)
-    moves, inside = values[2, -1] == 0.0, LARGE * np.abs(values[2, :-1])
-    growth = []
-    for probe, closer in ((values[0, :-1], values[1, :-1]), (values[3, :-1], values[4, :-1])):
-        unbounded = (np.abs(closer) > LEAST_GROWTH * np.abs(probe)) & (np.abs(closer) > inside) & moves
-        growth.append(np.where(unbounded, np.sign(closer), 0.0))
-    return arcs, np.stack(growth, axis=1)
-
-
-def _put_infinite(group: Group, rows: Array, peak: SignalPeak, arcs: Arcs, growth: Array) -> None:
-    """Write the infinite peaks of a signal of the designs in these rows: at the first end at which it grows."""
-    if not len(rows):
-        return
-    arc, end = np.nonzero((growth > 0.0).T)
-    own, first = np.unique(arcs.row[arc], return_index=True)
-    at = first[np.searchsorted(own, rows)]
-    angle = angle_in_period(np.where(end > 0, arcs.end[arc], arcs.start[arc])[at], group.scene.period)
-    known = np.zeros(len(rows))
-    put(peak, group.some(rows), (known + np.inf, angle, known, known + len(PROBES) * 2.0 + 1.0))
-
-
-def _of_arcs(group: Group, arcs: Arcs) -> Pieces:
-    """Return the pieces of arcs: between toggles, narrow near-toggles, and ends of half turns."""
-    length = arcs.end - arcs.start
-    start = np.mod(arcs.start - group.number(group.scene.mechanism.near_toggle_angle)[arcs.row], 360.0)
-    middles, widths = group.near_toggles()
-    with np.errstate(invalid="ignore"):
-        narrow = np.where(widths < NARROW, middles, np.nan)[arcs.row]
-        cuts = np.concatenate([narrow, np.broadcast_to(BORDERS, (len(length), 2))], axis=1)
-        away = np.mod(cuts - start[:, None], 360.0)
-        least = np.array([0.0, 0.0, BEYOND, BEYOND])
-        away = np.where((away > least) & (away < length[:, None] - least), away, np.nan)
-    near = 0.5 * (1.0 - np.cos(NEAREST))
-    away = np.concatenate([away, np.multiply.outer(length, [near, BESIDE_TOGGLE, 1.0 - BESIDE_TOGGLE])], axis=1)
-    arc, first, last = _between(np.sort(start[:, None] + away, axis=1), start + (1.0 - near) * length)
-    before, after = first - start[arc], start[arc] + length[arc] - last
-    widths = np.sqrt(np.minimum(np.stack([before, after]) / (last - first), 1.0))
-    return Pieces(arcs.row[arc], first, last, np.empty((0, len(arc))), widths)
+def highest_on_pieces(
+    group: Group, pieces: Pieces, signals: tuple[str, ...], half: int, threads: int | None
+) -> Mapping[str, Numbers]:
+    """Return the highest peak of each signal on the pieces of each design, which have so many samples on either side of
+    the middle of each half turn."""
+    order = np.argsort(pieces.counts, kind="stable")  # side by side stand designs with as many pieces
+    group, pieces, back = group.some(order), pieces.some(order), np.argsort(order)
+    request, inputs = _evaluated(group, pieces, signals)
+    frame, period = group.number(group.scene.mechanism.near_toggle_angle), group.scene.period
+    found = {}
+    for signal, peak in find_peaks_on_pieces(request, signals, inputs, ONE, pieces.counts, half, threads).items():
+        value, tangent, far, bound, samples, piece = peak
+        at = np.arange(len(value)), np.nan_to_num(piece).astype(int)
+        angle = angle_in_period(_angles(pieces, inputs, at, tangent, far) + frame, period)
+        found[signal] = value[back], angle[back], bound[back], samples[back]
+    return found
 
 
 # ------------------------------------------------------------------------------------------------- pieces
 
 
-def _pieces(group: Group, threads: int | None) -> Pieces:
+def _pieces(group: Group, half: int, threads: int | None) -> Pieces:
     """Return the pieces of a group's designs, which end at all jumps and kinks."""
     pieces = _between_jumps(group)
     pieces = pieces._replace(directions=_directions(group, pieces, threads))
     for name in group.scene.mechanism.kinks():
-        pieces = _cut_at_zeros(group, pieces, name, threads)
+        pieces = _cut_at_zeros(group, pieces, name, half, threads)
     return pieces
 
 
 def _directions(group: Group, pieces: Pieces, threads: int | None) -> Array:
-    """Return the directions of sliding (direction, piece), those in the middle of each piece."""
-    scene, half = group.scene, pieces.half
-    directions, count = scene.mechanism.directions(), len(pieces.row)
-    if not directions:
-        return np.empty((0, count))
-    place = {TANGENT: pieces.tangents(half, 0.5 * (pieces.start + pieces.end)), FAR: half}
-    request, inputs = group.one_by_one(scene.table.between_samples, directions, pieces.row, place, ())
-    values = evaluate(request, inputs, scene.grid(1), {ONE: count}, threads)
-    return np.stack([np.broadcast_to(values[name].values, count) for name in directions])
+    """Return the directions of sliding (direction, design, piece), those in the middle of each piece."""
+    scene, names = group.scene, group.scene.mechanism.directions()
+    shape = len(pieces.counts), pieces.start.shape[1]
+    if not names:
+        return np.empty((0, *shape))
+    places = {TANGENT: pieces.tangents(0.5 * (pieces.start + pieces.end)), FAR: pieces.half}
+    own = {name: _of_pieces(values) for name, values in places.items()}
+    request, inputs = group.one_by_one(scene.table.between_samples, names, np.arange(shape[0]), own, ())
+    values = evaluate(request, inputs, scene.grid(1), dict(zip((ONE, PIECE), shape, strict=True)), threads)
+    return np.stack([np.broadcast_to(aligned(values[name], (ONE, PIECE)), shape) for name in names])
 
 
 def _between_jumps(group: Group) -> Pieces:
@@ -274,55 +192,71 @@ def _between_jumps(group: Group) -> Pieces:
     scene, period, designs = group.scene, group.scene.period, len(group.designs)
     turns = np.arange(0.0, period, scene.mechanism.period)
     located = (group.zeros("jump")[..., None] + turns).reshape(designs, -1)
-    frame = group.number(scene.mechanism.near_toggle_angle)[:, None]
+    frame = _in_one_row(group.number(scene.mechanism.near_toggle_angle)[:, None])
     loads, jumps = _loads(scene), [group.number(jump)[:, None] + turns for jump in scene.jumps()]
-    jumps += [np.broadcast_to(loads.cuts, (designs, len(loads.cuts)))] if loads else []
-    breaks = np.mod(np.concatenate([*jumps, located], axis=1) - frame, period)
+    breaks = [np.mod(angles - frame, period) for angles in (*jumps, located, *([loads.cuts[None]] if loads else []))]
     middles, widths = group.near_toggles()
     with np.errstate(invalid="ignore"):
-        narrow = np.where(widths < NARROW, middles, np.nan)[..., None] + turns
-        ends = [breaks, narrow.reshape(designs, -1)]
-        if loads is None:  # pieces between cuts are short
-            away = np.abs(np.mod(breaks[:, :, None] - BORDERS + 180.0, 360.0) - 180.0)
-            ends.append(np.where((away < BEYOND).any(axis=1), np.nan, BORDERS))
-    cuts = distinct(np.concatenate(ends, axis=1))
-    return Pieces(*_between(cuts, cuts[:, 0] + period), np.empty((0, designs)))
+        narrow = np.where(widths < NARROW, middles, np.nan)
+    if loads and group.limits is None:  # pieces are short in any case, and many designs share them
+        narrow = middles[:1]
+    ends = [*breaks, (narrow[..., None] + turns).reshape(len(narrow), -1)]
+    if loads is None:
+        away = np.abs(np.mod(_side_by_side(breaks)[:, :, None] - BORDERS + 180.0, 360.0) - 180.0)
+        ends.append(np.where((away < BEYOND).any(axis=1), np.nan, BORDERS))
+    cuts = distinct(_side_by_side(ends))
+    return between(cuts, cuts[:, 0] + period, designs)
 
 
-def _between(cuts: Array, last: Array) -> tuple[Array, Array, Array]:
-    """Return row, start and end of the pieces between cuts (row, cut) in order, NaN at the end for none, and the last
-    end of each row."""
-    row, nth = np.nonzero(np.isfinite(cuts))
-    start = cuts[row, nth]
-    end = np.append(start[1:], 0.0)
-    final = np.append(row[1:] != row[:-1], True)
-    end[final] = last[row[final]]
-    sound = end > start
-    return row[sound], start[sound], end[sound]
+def _in_one_row(numbers: Array) -> Array:
+    """Return numbers (design, …) that are the same for all designs in one row."""
+    return numbers[:1] if (numbers == numbers[:1]).all() else numbers
 
 
-def _cut_at_zeros(group: Group, pieces: Pieces, name: str, threads: int | None) -> Pieces:
+def _side_by_side(parts: list[Array]) -> Array:
+    """Return numbers (design, …) side by side, in one row where all parts that have any are in one."""
+    parts = [part for part in parts if part.shape[1]] or [np.empty((1, 0))]
+    rows = max(map(len, parts))
+    return np.concatenate([np.broadcast_to(part, (rows, part.shape[1])) for part in parts], axis=1)
+
+
+def between(cuts: Array, last: Array, designs: int) -> Pieces:
+    """Return the pieces of designs between cuts (row, cut) in order, NaN for none, and the last end of each row."""
+    sound = (np.diff(cuts, axis=1, prepend=-np.inf) > 0.0) & (cuts < last[:, None])
+    cuts = np.sort(np.where(sound, cuts, np.nan), axis=1)
+    counts = sound.sum(axis=1)
+    cuts = cuts[:, : counts.max()]
+    ends = np.concatenate([cuts[:, 1:], np.full((len(cuts), 1), np.nan)], axis=1)
+    ends = np.where(np.isnan(ends), last[:, None], ends)
+    start, end = (np.where(np.isnan(cuts), x[:, :1], x) for x in (cuts, ends))
+    half = np.floor(np.mod(0.5 * (start + end) + 90.0, 360.0) / 180.0)
+    return Pieces(start, end, half, np.broadcast_to(counts, designs), np.empty((0, designs, 0)))
+
+
+def _cut_at_zeros(group: Group, pieces: Pieces, name: str, half: int, threads: int | None) -> Pieces:
     """Return the pieces, cut at the zeros of a quantity."""
     request, inputs = _evaluated(group, pieces, (name,))
-    tangent, far = zeros_of_pieces(request, inputs, {ONE: len(pieces.row)}, threads)
-    piece, nth = np.nonzero(np.isfinite(tangent))
-    if not len(piece):
+    tangent, far = zeros_of_pieces(request, inputs, ONE, pieces.counts, half, threads)
+    found = np.nonzero(np.isfinite(tangent))
+    if not len(found[0]):
         return pieces
-    angle = _angles(pieces, inputs, piece, tangent[piece, nth], far[piece, nth])
-    cuts = np.concatenate([pieces.start[:, None], by_row(piece, angle, len(pieces.row))], axis=1)
-    of, start, end = _between(np.sort(cuts, axis=1), pieces.end)
-    return Pieces(pieces.row[of], start, end, pieces.directions[:, of])
+    angle = _angles(pieces, inputs, found[:2], tangent[found], far[found])
+    designs, start = len(pieces.counts), np.where(pieces.exist, pieces.start, np.nan)
+    cuts = np.sort(np.concatenate([start, by_row(found[0], angle, designs)], axis=1), axis=1)
+    cut = between(cuts, start[:, 0] + group.scene.period, designs)
+    of = (cut.start[:, :, None] >= start[:, None, :]).sum(axis=-1) - 1
+    return cut._replace(directions=np.take_along_axis(pieces.directions, of[None], axis=2))
 
 
-def _angles(pieces: Pieces, inputs: Fields, piece: Array, tangent: Array, far: Array) -> Array:
-    """Return the angles from the near-toggle [degree] of places on pieces."""
+def _angles(pieces: Pieces, inputs: Fields, at: tuple[Array, ...], tangent: Array, far: Array) -> Array:
+    """Return the angles from the near-toggle [degree] of places on pieces `at` (design, piece)."""
     square = tangent * tangent
     share = square / (1.0 + square)
-    start, end = (inputs[name].values[piece] for name in ENDS)
-    tangent = np.where(far > 0.0, end - (end - start) * share, start + (end - start) * share)
-    middle = 180.0 * inputs[HALF_TURN].values[piece]
-    angle = 2.0 * np.degrees(np.arctan(tangent)) + middle
-    return pieces.start[piece] + np.mod(angle - pieces.start[piece] + 90.0, 360.0) - 90.0
+    shape = len(pieces.counts), pieces.start.shape[1]
+    first, last, half = (np.broadcast_to(inputs[name].values, shape)[at] for name in (*ENDS, HALF_TURN))
+    x = np.where(far > 0.0, last - (last - first) * share, first + (last - first) * share)
+    angle, start = 2.0 * np.degrees(np.arctan(x)) + 180.0 * half, np.broadcast_to(pieces.start, shape)[at]
+    return start + np.mod(angle - start + 90.0, 360.0) - 90.0
 
 
 # ---------------------------------------------------------------------------------------------- evaluation
@@ -331,27 +265,32 @@ def _angles(pieces: Pieces, inputs: Fields, piece: Array, tangent: Array, far: A
 def _evaluated(group: Group, pieces: Pieces, names: tuple[str, ...]) -> tuple[Plan, Fields]:
     """Return the plan of quantities on pieces, and its inputs: those of the designs, and of the pieces."""
     scene, index = group.scene, group.scene.mechanism.index
-    directions = scene.mechanism.directions()
-    half = pieces.half
-    start, end = (pieces.tangents(half, angle) for angle in (pieces.start, pieces.end))
-    widths = _widths(pieces, start, end, *group.near_toggles())
-    own = dict(zip((*ENDS, HALF_TURN, *WIDTHS), (start, end, half, *np.minimum(widths, pieces.widths)), strict=True))
+    directions, half = scene.mechanism.directions(), pieces.half
+    start, end = map(pieces.tangents, (pieces.start, pieces.end))
+    widths = np.minimum(_widths(pieces, start, end, *group.near_toggles()), pieces.widths)
+    own = dict(zip((*ENDS, HALF_TURN, *WIDTHS), (start, end, half, *widths), strict=True))
     own |= {on_piece(name): values for name, values in zip(directions, pieces.directions, strict=True)}
     table, loads = _table_on_pieces(scene.table, directions), _loads(scene)
     if loads is not None:
-        own |= {MIDDLE: pieces.tangents(half, 0.5 * (pieces.start + pieces.end))}
+        own |= {MIDDLE: pieces.tangents(0.5 * (pieces.start + pieces.end))}
         own |= _on_pieces(loads, group, pieces)
         table = _table_on_pieces(scene.table, directions, loads.rows(ANGLE))
-    places = ((ALONG, (index, ONE)), (END, (index,)))
-    return group.one_by_one(table, (*names, NEAR_WIDTH, FAR_WIDTH), pieces.row, own, places)
+    of_pieces = {name: _of_pieces(values) for name, values in own.items()}
+    places = ((ALONG, (index, ONE, PIECE)), (END, (index,)))
+    return group.one_by_one(table, (*names, NEAR_WIDTH, FAR_WIDTH), np.arange(len(group.designs)), of_pieces, places)
+
+
+def _of_pieces(values: Array) -> Field:
+    """Return numbers (design, piece) of designs, or in one row of all, as an input."""
+    return Field((PIECE,), values[0]) if len(values) == 1 else Field((ONE, PIECE), values)
 
 
 def _on_pieces(loads: Polynomials, group: Group, pieces: Pieces) -> dict[str, Array]:
     """Return the numbers of loads over the angle on pieces."""
-    scene, designs = group.scene, group.designs[pieces.row]
-    start = pieces.start + group.number(scene.mechanism.near_toggle_angle)[pieces.row]
-    places = places_of(scene.at_one_angle.inputs.sizes, designs)
-    return loads.on_pieces(start, pieces.end - pieces.start, places)
+    scene = group.scene
+    frame = _in_one_row(group.number(scene.mechanism.near_toggle_angle)[:, None])
+    places = places_of(scene.at_one_angle.inputs.sizes, group.designs[:, None])
+    return loads.on_pieces(pieces.start + frame, pieces.end - pieces.start, places)
 
 
 def on_piece(name: str) -> str:
@@ -378,20 +317,30 @@ def _loads(scene: Scene) -> Polynomials | None:
     return None if scene.steady else polynomials(scene)
 
 
-def _widths(pieces: Pieces, start: Array, end: Array, angles: Array, widths: Array) -> tuple[Array, Array]:
-    """Return the widths of near-toggles (design, nth) as both ends of pieces know them, as tangents of half the angle
-    that follows a piece.
+def _widths(pieces: Pieces, start: Array, end: Array, angles: Array, widths: Array) -> Array:
+    """Return the widths of near-toggles (design, nth) as both ends of pieces know them (end, design, piece), as
+    tangents of half the angle that follows a piece.
 
     Quantities have poles at tangents x ± i·width, at a share z of the piece. There tan² is z/(1 − z).
     """
-    away = np.mod(angles[pieces.row] - 180.0 * pieces.half[:, None] + 180.0, 360.0) - 180.0
-    with np.errstate(invalid="ignore"):
-        own = (widths[pieces.row] < NARROW) & (np.abs(away) < 180.0 - BEYOND)
-    piece, nth = np.nonzero(own)
-    x = np.tan(np.radians(0.5 * away[piece, nth]))
-    width = 1j * (1.0 + x * x) * widths[pieces.row[piece], nth]
-    seen = np.ones((2, len(start)))
-    for of_end, distance in zip(seen, (x - start[piece], end[piece] - x), strict=True):
-        z = (distance + width) / (end - start)[piece]
-        np.minimum.at(of_end, piece, np.abs(np.sqrt(z / (1.0 - z)).imag))
-    return seen[0], seen[1]
+    seen = np.ones((2, len(pieces.counts), start.shape[1]))
+    for angle, width in zip(angles.T, widths.T, strict=True):
+        rows = np.flatnonzero(width < NARROW)
+        if len(rows):
+            first, last, half = (x if len(x) == 1 else x[rows] for x in (start, end, pieces.half))
+            away = np.mod(_in_one_row(angle[rows, None]) - 180.0 * half + 180.0, 360.0) - 180.0
+            near = np.flatnonzero((np.abs(away) < 180.0 - BEYOND).any(axis=0))
+            x, at, length = np.tan(np.radians(0.5 * away[:, near])), np.ix_(rows, near), (last - first)[:, near]
+            height = (1.0 + x * x) * width[rows, None]
+            for of_end, distance in zip(seen, (x - first[:, near], last[:, near] - x), strict=True):
+                limit = _imaginary_root(distance, length, height)
+                of_end[at] = np.where(np.abs(away[:, near]) < 180.0 - BEYOND, np.minimum(of_end[at], limit), of_end[at])
+    return seen
+
+
+def _imaginary_root(distance: Array, length: Array, height: Array) -> Array:
+    """Return the imaginary part of √(z/(1 − z)), z = (distance + i·height)/length."""
+    below = (length - distance) ** 2 + height * height
+    size = np.sqrt((distance * distance + height * height) / below)
+    real = (distance * (length - distance) - height * height) / below
+    return np.sqrt(0.5 * np.maximum(size - real, 0.0))

@@ -90,7 +90,7 @@ class Polynomials(NamedTuple):
             numbers[_origin(nth)] = np.where((first + nth > last) & (nth > 0), np.inf, away)
             for name, field in self.inputs.items():
                 terms = np.moveaxis(field.values, 1, -1)[(interval % count, *at_designs[name])]
-                numbers |= zip(_terms(name, nth, terms.shape[1]), terms.T, strict=True)
+                numbers |= zip(_terms(name, nth, terms.shape[-1]), np.moveaxis(terms, -1, 0), strict=True)
         return numbers
 
 

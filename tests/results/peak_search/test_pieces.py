@@ -9,8 +9,8 @@ import xarray as xr
 
 import linksweep as ls
 from linksweep.engine.peaks import laid_out, on_pieces, zeros
-from linksweep.engine.peaks.abreast import BLOCKS, EVALUATIONS
-from linksweep.engine.peaks.brackets import BEST_ROWS, PEAK, PEAK_X
+from linksweep.engine.peaks.abreast import EVALUATIONS, ROOM, STATE_ROWS
+from linksweep.engine.peaks.brackets import BRACKET_ROWS, PEAK, PEAK_X
 from linksweep.engine.peaks.evaluators import Functions
 from linksweep.engine.peaks.search import HALF, SAMPLES
 from linksweep.physics.closures.crank_angle import place_on_piece
@@ -61,7 +61,9 @@ def test_peaks_reach_the_densest_samples_and_are_values_of_the_signal(scene):
 def test_the_slider_turns_round_and_the_guide_bears_nothing_only_at_ends_of_pieces():
     scene = engines()
     (group,) = groups(scene, ("T12",), np.arange(DESIGNS))
-    row, start, end, directions, _ = pieces._pieces(group, None)
+    every = pieces._pieces(group, HALF, None)
+    row, nth = np.nonzero(every.exist)
+    start, end, directions = every.start[row, nth], every.end[row, nth], every.directions[:, row, nth]
     np.testing.assert_allclose(np.bincount(row, end - start), 360.0, rtol=1e-14)
     middle = group.number(scene.mechanism.near_toggle_angle)[row]
     signs = [
@@ -110,7 +112,7 @@ def zeros_of(height) -> np.ndarray:
     def prepare(first, designs, sizes, parameters, parameter_at, constants):
         constants[:] = 1.0
 
-    def share(constants, x):
+    def enter(first, piece, sizes, parameters, parameter_at, constants):
         pass
 
     def sample(constants, x, rows):
@@ -124,8 +126,8 @@ def zeros_of(height) -> np.ndarray:
     one, places = np.zeros(1, dtype=np.int64), np.full((2, 1, zeros.MOST_ZEROS), np.nan)
     with np.errstate(all="ignore"):
         zeros.find_zeros(
-            0, 1, 1, 1, one + 1, np.zeros(1), one, laid_out.grades(), prepare, share, sample, evaluate,
-            np.zeros((BLOCKS, 2)), np.zeros(4 * HALF + 4), np.zeros(SAMPLES + 1),
+            0, 1, 1, 1, one + 1, one + 1, np.zeros(1), one, laid_out.grades(), prepare, enter, sample, evaluate,
+            np.zeros((1, 2)), np.zeros((1, 4 * HALF + 4)), np.zeros((1, SAMPLES + 1)),
             np.zeros((zeros.ZERO_ROWS, 99)), np.zeros(2), places,
         )  # fmt: skip
     angles = 2.0 * np.arctan(places[0, 0]) + np.pi * places[1, 0]
@@ -171,19 +173,18 @@ def test_what_is_unbounded_at_toggles_is_infinite_and_has_its_other_extreme_betw
 
 def test_of_pieces_with_several_summits_the_highest_is_the_peak():
     """−cos 3φ and a little of cos φ along each piece, φ from 0 at its start to π at its end: two summits, of which that
-    at π/3 is higher by little, and the pieces of a design differ by as little."""
-    heights = np.array([0.0, 3e-7, 1e-7, 2e-7, 0.0, -1.0])
-    owners, half, little = np.array([0, 0, 0, 0, 1, 1]), HALF, 1e-6
-    results = []
+    at π/3 is higher by little, and the pieces of a design differ by as little. The second design has two pieces."""
+    heights = np.array([[0.0, 3e-7, 1e-7, 2e-7], [0.0, -1.0, 9.0, 9.0]])
+    counts, half, little, results = np.array([4, 2]), HALF, 1e-6, []
 
     def height(phi, of_piece):
         return 5.0 + of_piece - np.cos(3.0 * phi) + little * np.cos(phi)
 
-    def prepare(front, stop, sizes, parameters, parameter_at, constants):
-        constants[:] = 1.0, 1.0, parameters[front]
+    def prepare(front, designs, sizes, parameters, parameter_at, constants):
+        constants[:] = 1.0, 1.0, math.nan
 
-    def share(constants, x):
-        pass
+    def enter(front, piece, sizes, parameters, parameter_at, constants):
+        constants[2] = parameters.reshape(sizes)[piece, front]
 
     def sample(constants, x, rows):
         angles = 2.0 * np.arctan(x.reshape(2, -1)[:, 1:-1]) + [[0.0], [np.pi]]
@@ -193,14 +194,20 @@ def test_of_pieces_with_several_summits_the_highest_is_the_peak():
         at = table[:, first:last]
         at[value] = height(2.0 * np.arctan(at[x]) + np.pi * at[far], constants[2])
 
-    for bounds in ([0, 6], [0, 4, 6]):
-        functions = Functions(1, 3, 0, prepare, share, sample, evaluate)
-        pieces = laid_out.LaidOut(("height",), functions, (6,), (heights, np.zeros(1, dtype=np.int64)), half)
-        best = np.empty((BEST_ROWS + 1, 6))
+    for together in (1, 2):
+        functions = Functions(1, 3, 0, prepare, print, sample, evaluate, enter)
+        pieces = laid_out.LaidOut(("height",), functions, (4, 2), (heights.T.ravel(), np.zeros(1, dtype=int)), half)
+        best, room = np.empty((on_pieces.OF_PIECE + 1, 2)), 4 * together
         with np.errstate(all="ignore"):
-            on_pieces.search(0, len(bounds) - 1, bounds, owners, 1, *pieces.arguments_of_pieces(6, 6), best)
+            on_pieces.search(
+                0, 2, together, 1, counts, *pieces.arguments_of_pieces(together), np.zeros((STATE_ROWS, 1)),
+                np.zeros((STATE_ROWS, 1)), np.zeros(together), np.zeros((on_pieces.SUMMIT_ROWS, room)),
+                np.zeros((BRACKET_ROWS, ROOM)), pieces.gathered, np.zeros((on_pieces.OF_PIECE, room)), best,
+            )  # fmt: skip
         results.append(best)
-        np.testing.assert_allclose(best[PEAK][[1, 4]], 6.0 + heights[[1, 4]] + 0.5 * little, rtol=1e-12)
-        np.testing.assert_allclose(best[PEAK_X][[1, 4]], np.tan(np.pi / 6.0), atol=1e-5)
-        assert (best[PEAK] <= 6.0 + heights + 0.5 * little + 1e-12).all() and best[EVALUATIONS, 5] == 4 * half
-    np.testing.assert_array_equal(results[0][[PEAK, EVALUATIONS]], results[1][[PEAK, EVALUATIONS]])
+        np.testing.assert_allclose(best[PEAK], [6.0 + 3e-7 + 0.5 * little, 6.0 + 0.5 * little], rtol=1e-12)
+        np.testing.assert_allclose(best[PEAK_X], np.tan(np.pi / 6.0), atol=1e-5)
+        np.testing.assert_array_equal(best[on_pieces.OF_PIECE], [1, 0])
+        samples = best[EVALUATIONS] - 4 * half * counts
+        assert samples[0] > samples[1] > 0.0  # the last piece of the second design is too low for trials
+    np.testing.assert_array_equal(*results)
