@@ -73,8 +73,8 @@ def write_figure(figure: Figure, path: Path) -> None:
 
 def _write_png(figure: Figure, path: Path) -> None:
     """Write a figure as `Figure.savefig` does, which draws it twice, the first time for a layout that any drawing
-    makes."""
+    makes, and compresses it for twice the time into 0.96 of the bytes."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
     figure.set_dpi(150)
-    FigureCanvasAgg(figure).print_png(path)
+    FigureCanvasAgg(figure).print_png(path, pil_kwargs={"compress_level": 3})

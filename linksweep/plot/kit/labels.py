@@ -115,9 +115,8 @@ class Ink:
             self.add(self._broad(points, 0.5 * line.get_markersize()))
 
     def add(self, points: np.ndarray) -> None:
-        low, high = self.frame[:2], self.frame[2:]
-        inside = ((points >= low) & (points <= high)).all(axis=1)  # nor NaN
-        self.cells[tuple(self._cell(points[inside]).T)] = True
+        inside = points[_within(points, self.frame)]  # no NaN
+        self.cells[tuple(self._cell(inside).T)] = True
 
     def count(self, boxes: np.ndarray) -> np.ndarray:
         """Count the covered cells in each box, by a table of sums."""
@@ -180,12 +179,17 @@ def _cost(boxes: np.ndarray, leaders: np.ndarray, ink: Ink, taken: np.ndarray) -
     """Return the cost of each place: highest on another text or outside the axes, then on a curve, then across one."""
     on_texts = _overlap(boxes, taken)
     on_texts += on_texts > 0.0
-    points = leaders[:, :, None]
-    struck = ((points >= taken[:, :2]) & (points <= taken[:, 2:])).all(axis=3).sum(axis=(1, 2))
+    struck = _within(leaders[:, :, None], taken).sum(axis=(1, 2))
     outside = 1.0 - _overlap(boxes, ink.frame[None])[:, 0]
     outside += outside > 1e-6
     across = ink.at(leaders[:, 6:]).sum(axis=1)  # where a leader begins, there is always a curve
     return 500.0 * on_texts.sum(axis=1) + 4000.0 * outside + 25.0 * struck + 12.0 * ink.count(boxes) + 3.0 * across
+
+
+def _within(points: np.ndarray, boxes: np.ndarray) -> np.ndarray:
+    """Return whether points lie in boxes, side by side."""
+    (x, y), (left, bottom, right, top) = np.moveaxis(points, -1, 0), np.moveaxis(boxes, -1, 0)
+    return (x >= left) & (x <= right) & (y >= bottom) & (y <= top)
 
 
 def _overlap(boxes: np.ndarray, others: np.ndarray) -> np.ndarray:
