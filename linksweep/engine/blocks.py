@@ -6,6 +6,8 @@ import weakref
 
 import numpy as np
 
+from linksweep.engine.kernel.machine_code import address
+
 LEAST, MOST = 2**22, 2**28
 """Bytes from which memory is kept for the next result, and bytes that are kept in all."""
 
@@ -33,7 +35,7 @@ def block(rows: int, columns: int) -> np.ndarray:
 
 def _on_a_line(memory: np.ndarray, size: int) -> np.ndarray:
     """Return the numbers in some bytes of memory, from the first that begins a line of the cache."""
-    before = -memory.ctypes.data % LINE
+    before = -address(memory) % LINE
     return memory[before : before + size].view(np.float64)
 
 
