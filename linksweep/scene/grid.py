@@ -73,7 +73,7 @@ def _angles(values: Any, name: str) -> np.ndarray:
 
 def in_order(grid: Grid) -> Grid:
     """Return the grid with its angles sorted, each once, as the search for peaks between neighbours needs them."""
-    if (np.diff(grid.angles) > 0.0).all():
+    if grid.period or (np.diff(grid.angles) > 0.0).all():
         return grid
     angles, first = np.unique(grid.angles, return_index=True)
     return grid._replace(angles=angles, table=grid.table.take(first, axis=1))

@@ -131,7 +131,7 @@ def _peaks(plan: Plan, designs: LaidOut, smooth: bool, threads: int | None) -> P
     def work(first: int, last: int) -> None:
         run(
             first, last, designs.designs, lanes, smooth, *designs.arguments(first, last),
-            np.zeros((abreast.STATE_ROWS, columns)), np.zeros((BRACKET_ROWS, abreast.ROOM)), designs.gathered, best,
+            np.empty((abreast.STATE_ROWS, columns)), np.empty((BRACKET_ROWS, abreast.ROOM)), designs.gathered, best,
         )  # fmt: skip
 
     with np.errstate(all="ignore"):
