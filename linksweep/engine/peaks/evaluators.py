@@ -386,7 +386,8 @@ class Evaluators:
         lines = [(node.operator, node.value, [nodes[x] for x in node.operands]) for node in nodes]
         roles = [[nodes[node] for node in role] for role in (self.inputs, self.constants, self.signals, self.shared)]
         dims = [[dim in node.dims for dim in self.plan.loops] for node in self.inputs]
-        return f"{SOURCE} {HALF} {sorted(SLOW)} {lines} {roles} {dims}"
+        counted = [self.dims.index(dim) for dim in self.plan.loops]
+        return f"{SOURCE} {HALF} {sorted(SLOW)} {lines} {roles} {dims} {counted} {PIECE in self.dims}"
 
 
 def _number(builder: Any, array: Any, k: Any) -> Any:

@@ -94,7 +94,7 @@ def sample_piece(
     front, piece, designs, lanes, sizes, parameters, parameter_at, grades, prepare, enter, sample, constants, x, rows,
     row
 ):  # fmt: skip
-    """Sample a piece of designs side by side: in a row of these tables, after those of their pieces before."""
+    """Sample a piece of designs side by side, into a row of these tables that follows those of their earlier pieces."""
     if piece == 0:
         call(prepare, (front, designs, sizes, parameters, parameter_at, constants[row]))
     for k in range(constants.shape[1] if piece > 0 else 0):
