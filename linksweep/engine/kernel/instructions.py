@@ -74,8 +74,8 @@ class Instructions:
             "fma": partial(self._call, "fma"),
             "sum_low": partial(self._sum_low, builder.fadd, builder.fsub),
             "difference_low": partial(self._sum_low, builder.fsub, builder.fadd),
-            "ordered_low": lambda x, y: builder.fsub(y, builder.fsub(builder.fadd(x, y), x)),
-            "product_low": lambda x, y: self._call("fma", x, y, builder.fneg(builder.fmul(x, y))),
+            "ordered_low": lambda x, y, high=None: builder.fsub(y, builder.fsub(high or builder.fadd(x, y), x)),
+            "product_low": lambda x, y, high=None: self._call("fma", x, y, builder.fneg(high or builder.fmul(x, y))),
             "where": self._where,
             "atan2": self._atan2,
         }
@@ -150,6 +150,11 @@ class Instructions:
         self.builder.store(value, place)
         return place
 
+    def unknown(self, pointer: Any) -> Any:
+        """Return a pointer of which LLVM does not know that it is the same."""
+        kind = self.ir.FunctionType(pointer.type, [pointer.type])
+        return self.builder.asm(kind, "", "=r,0", [pointer], side_effect=True)
+
     def load(self, start: Any, at: Any) -> Any:
         """Return the vector from a position of an array on."""
         return self.builder.load(self._place(start, at), align=8)
@@ -201,10 +206,10 @@ class Instructions:
         known = module.globals.get(name)
         return self.builder.call(known or self.ir.Function(module, kind, name), x)
 
-    def _sum_low(self, plus: Callable[..., Any], minus: Callable[..., Any], x: Any, y: Any) -> Any:
-        """Write Knuth's way to what a rounded sum or difference misses (`base.low_words`)."""
+    def _sum_low(self, plus: Callable[..., Any], minus: Callable[..., Any], x: Any, y: Any, high: Any = None) -> Any:
+        """Write Knuth's way to what a rounded sum or difference misses (`base.low_words`); that itself may be known."""
         subtract = self.builder.fsub
-        high = plus(x, y)
+        high = high or plus(x, y)
         part = subtract(high, x)
         return plus(subtract(x, subtract(high, part)), minus(y, part))
 

@@ -3,20 +3,23 @@
 A processor looks a few hundred instructions ahead. In a longer loop it meets stretches whose operations all wait for
 each other, with none to do meanwhile. So each pass does the last operations of one vector between earlier ones of the
 next vectors, as in modulo scheduling (B. R. Rau, Iterative Modulo Scheduling, 1994): each operation is done as late as
-those that need it allow, in a cycle that its unit has free in every pass. What a later pass reads waits in memory.
+those that need it allow, in a cycle that its unit has free in every pass.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections import defaultdict
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import count, islice
+from typing import NamedTuple
 
+from linksweep.engine.kernel.waiting import Gap, gaps, in_memory
 from linksweep.engine.trace.graph import Node
 from linksweep.engine.trace.plan import instructions
 
 LEAST = 301
 """Operations of the shortest loops that it is for: most take 0.7 to 0.93 of the time (AMD Zen 4)."""
-ROOM = 1.15
+ROOM = 1.1
 """Cycles of a pass, as a multiple of those in which the busiest unit is busy."""
 ANY, ADDER, MULTIPLIER = "any", "adder", "multiplier"
 UNITS = dict.fromkeys(("negate", "abs", "where"), ANY) | dict.fromkeys(("*", "product_low", "/", "sqrt"), MULTIPLIER)
@@ -25,17 +28,55 @@ LATENCY = {ANY: 1, ADDER: 5, MULTIPLIER: 5, "/": 16, "sqrt": 24, "sum_low": 20, 
 """Cycles after which the results of units, or of single operations, are there, with some to spare."""
 CYCLES = {"/": 3, "sqrt": 2}
 """Cycles that operations take from others of their unit; all others take one for each instruction."""
-HIGH = {"sum_low": "+", "difference_low": "-", "ordered_low": "+", "product_low": "*"}
-"""Operations whose results low words are made of, once more unless they are known in the same pass."""
 
 
-def pipeline(work: Sequence[Node]) -> dict[Node, int]:
-    """Return the operations of a loop in the order of a pass, each with the number of passes that it comes after the
-    first ones of its vector; none of a short loop."""
+class Place(NamedTuple):
+    """A place in memory, among those that have room for values of so many vectors."""
+
+    number: int
+    vectors: int
+
+
+class Pipeline(NamedTuple):
+    """The operations of a loop in the order of a pass, each with its stage: the number of passes that it comes after
+    the first ones of its vector.
+
+    Values that wait in memory have a place there, where some operations read them. Others are `kept` until the pass in
+    which their vector has this stage.
+    """
+
+    stages: Mapping[Node, int]
+    places: Mapping[Node, Place]
+    read: Mapping[Node, Sequence[Node]]
+    kept: Sequence[tuple[Node, int]]
+
+
+def pipeline(work: Sequence[Node]) -> Pipeline | None:
+    """Return a loop in stages; None for a short loop."""
     if len(work) < LEAST:
-        return {}
+        return None
     length, start = _schedule(work)
-    return {node: start[node] // length for node in sorted(work, key=lambda x: (start[x] % length, -start[x]))}
+    order = sorted(work, key=lambda x: (start[x] % length, -start[x]))
+    every = gaps({node: start[node] for node in order})
+    waiting = in_memory(every, length)
+    read = defaultdict[Node, list[Node]](list)
+    for gap in waiting:
+        read[gap.reader].append(gap.value)
+    passes = [(gap.value, stage) for gap in every if gap not in waiting for stage in gap.passes(length)]
+    kept = [*dict.fromkeys(passes)]
+    return Pipeline({node: start[node] // length for node in order}, _places(waiting, start, length), read, kept)
+
+
+def _places(waiting: Iterable[Gap], start: Mapping[Node, int], length: int) -> dict[Node, Place]:
+    """Return places for values that wait: for one vector, or for as many as any value is read after being stored."""
+    vectors: dict[Node, int] = {}
+    for gap in waiting:
+        stored_since = -((start[gap.value] - gap.last) // length)
+        vectors[gap.value] = max(vectors.get(gap.value, 1), stored_since)
+    most = max(vectors.values(), default=1)
+    numbers = {1: count(), most: count()}
+    room = {value: 1 if needed == 1 else most for value, needed in vectors.items()}
+    return {value: Place(next(numbers[vectors]), vectors) for value, vectors in room.items()}
 
 
 def busy(work: Iterable[Node]) -> dict[str, int]:
@@ -51,8 +92,7 @@ def _schedule(work: Sequence[Node]) -> tuple[int, dict[Node, int]]:
     way: dict[Node, int] = {}
     followers: dict[Node, list[Node]] = {node: [] for node in work}
     for node in work:
-        high = node.graph.find(HIGH.get(node.operator, ""), *node.operands)
-        before = {x: None for x in (*node.operands, high) if x in way}
+        before = [x for x in dict.fromkeys(node.read) if x in way]
         way[node] = max((way[x] + _latency(x) for x in before), default=0)
         for x in before:
             followers[x].append(node)

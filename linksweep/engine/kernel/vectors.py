@@ -24,14 +24,18 @@ Some of the operations may be done one vector ahead of the others, which then wa
     for j, x7 in in_vectors_ahead(0, samples, samples, start):
         block[2, j] = x7
 
-Or a pass does the last operations of one vector between earlier ones of others, and keeps what a later pass reads:
+Or a pass does the last operations of one vector between earlier ones of others. What is read later is kept until the
+next pass, or it waits in memory, at one of 4 places for 2 vectors each:
 
-    kept = places(1)
+    kept, waiting = places(1), memory(4, 2)
     for j0, j1 in in_stages(0, samples, samples, 2):
         x7_1 = kept[0]
-        block[2, j1] = x7_1
+        x3_1 = waiting[0, 1]
+        block[2, j1] = x7_1 * x3_1
         cos2 = profiles[0, j0]
-        x7 = cos2 * x5
+        x3 = cos2 * cos2
+        waiting[0] = x3
+        x7 = x3 * x5
         kept[0] = x7
 
 Designs stand side by side in the same way, with their samples one after the other, and running summaries of these:
@@ -172,6 +176,41 @@ class _Places:
         self.writer.builder.store(write.wide(write.as_number(value.llvm)), self.places[k])
 
 
+class _Memory:
+    """Places in memory, each for values of so many `vectors`: as many passes of a loop store in turn.
+
+    LLVM, which does not know that what is read is what was stored, leaves the values there.
+    """
+
+    def __init__(self, writer: _Writer, places: int, vectors: int) -> None:
+        self.writer, write = writer, writer.instructions
+        with writer.builder.goto_entry_block():
+            memory = writer.builder.alloca(write.double, places * vectors * write.width)
+        memory.align = 64
+        starts = [writer.builder.gep(memory, [self._at(places * k)]) for k in range(vectors)]
+        self.slots = [write.slot(write.unknown(start)) for start in (*starts, memory)]
+
+    def begin_pass(self) -> None:
+        """Take the places that were stored to so many passes ago, 0 and more, and those to store to."""
+        *self.read, self.stored = map(self.writer.builder.load, self.slots)
+
+    def end_pass(self) -> None:
+        *others, oldest = self.read
+        for start, slot in zip((oldest, *others, self.writer.instructions.unknown(oldest)), self.slots, strict=True):
+            self.writer.builder.store(start, slot)
+
+    def __getitem__(self, at: tuple[int, int]) -> _Value:
+        """Return the value at a place that was stored so many passes ago."""
+        place, passes = at
+        return _Value(self.writer, self.writer.instructions.load(self.read[passes % len(self.read)], self._at(place)))
+
+    def __setitem__(self, place: int, value: _Value) -> None:
+        self.writer.instructions.store(value.llvm, self.stored, self._at(place))
+
+    def _at(self, place: int) -> Any:
+        return self.writer.integer(place * self.writer.instructions.width)
+
+
 class _Writer:
     """Writer of one function's instructions."""
 
@@ -181,12 +220,14 @@ class _Writer:
         _align_stack(builder.function)
         self.head: Any = None
         """The block before the outermost loop that is being written."""
+        self.memories: list[_Memory] = []
+        """Those of the loop in stages."""
 
     def names(self) -> dict[str, Any]:
         """Return the functions that a function's source may use."""
         operations = {name: partial(self.operation, name) for name in self.instructions.operators}
         loops = {"in_vectors": self.in_vectors, "in_vectors_ahead": self.in_vectors_ahead, "each": self.each}
-        loops |= {"in_stages": self.in_stages, "places": self.places}
+        loops |= {"in_stages": self.in_stages, "places": self.places, "memory": self.memory}
         summaries = {kind: partial(self.summary, function) for kind, function in SUMMARIES.items()}
         return {"math": math, "number": self.number, "running": self.running} | loops | operations | summaries
 
@@ -228,6 +269,11 @@ class _Writer:
         self.instructions = Instructions(self.builder, width() // 2)
         return _Places(self, count)
 
+    def memory(self, places: int, vectors: int) -> _Memory:
+        """Return places for what waits longer."""
+        self.memories.append(_Memory(self, places, vectors))
+        return self.memories[-1]
+
     def in_stages(
         self, first: _Value | int, last: _Value | int, samples: _Value | int, stages: int
     ) -> Iterator[list[_Value]]:
@@ -241,7 +287,11 @@ class _Writer:
         ahead = [self.integer(step * k) for k in reversed(range(stages))]
         loop = self.instructions.loop(self.builder.sub(first, ahead[0]), self.integer(last), step)
         for j, _ in self._inside(loop):
+            for memory in self.memories:
+                memory.begin_pass()
             yield [place(self._larger(self.builder.add(j, more), first)) for more in ahead]
+            for memory in self.memories:
+                memory.end_pass()
 
     def _place_of_vector(self, samples: _Value | int) -> Callable[[Any], _Value]:
         """Return a function of a loop's counter: where its vector begins, which must end with the row."""

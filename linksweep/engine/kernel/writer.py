@@ -19,12 +19,13 @@ instructions `engine.kernel.vectors` writes: of each level, one for its single v
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
 from linksweep.engine.kernel.ahead import done_ahead
-from linksweep.engine.kernel.pipeline import pipeline
+from linksweep.engine.kernel.pipeline import Pipeline, pipeline
 from linksweep.engine.trace.graph import Node
 from linksweep.engine.trace.plan import Plan
 
@@ -203,8 +204,8 @@ class Writer:
         self._function("rows", level)
         self._read_singles({*written, *operands(work)} - set(work))
         bounds = "0, samples" if self.plan.loops else "first, last"
-        if stages := pipeline(work):
-            self._in_stages(bounds, stages, {*written})
+        if loop := pipeline(work):
+            self._in_stages(bounds, loop, {*written})
             return
         if ahead := done_ahead(work):
             work = [node for node in work if node not in set(ahead)]
@@ -219,23 +220,28 @@ class Writer:
             self._line(1, f"for j in in_vectors({bounds}, samples):")
         self._operations(2, work, written)
 
-    def _in_stages(self, bounds: str, stages: Mapping[Node, int], written: set[Node]) -> None:
+    def _in_stages(self, bounds: str, loop: Pipeline, written: set[Node]) -> None:
         """Write a loop whose operations are done in this order, each in its stage of another vector."""
-        last_read = dict(stages)
-        for node in stages:
-            last_read |= {x: max(last_read[x], stages[node]) for x in node.operands if x in stages}
-        kept = [(x, later) for x, last in last_read.items() for later in range(stages[x] + 1, last + 1)]
-        counters = [f"j{k}" for k in range(1 + max(stages.values()))]
-        self.stages = stages
-        self._line(1, f"kept = places({len(kept)})")
+        self.stages = loop.stages
+        counters = [f"j{k}" for k in range(1 + max(loop.stages.values()))]
+        self._line(1, f"kept = places({len(loop.kept)})")
+        for vectors, places in Counter(place.vectors for place in loop.places.values()).items():
+            self._line(1, f"waiting_{vectors} = memory({places}, {vectors})")
         self._line(1, f"for {', '.join(counters)}, in in_stages({bounds}, samples, {len(counters)}):")
-        for k, (x, self.stage) in enumerate(kept):
+        for k, (x, self.stage) in enumerate(loop.kept):
             self._define(2, x, f"kept[{k}]")
-        for node, self.stage in stages.items():
+        for node, stage in loop.stages.items():
+            self.stage = stage
+            for x in loop.read.get(node, ()):
+                number, vectors = loop.places[x]
+                self._line(2, f"{self.name(x)} = waiting_{vectors}[{number}, {stage - loop.stages[x]}]")
+                self.known.add(self.name(x))
             self._operations(2, [node], {node} & written)
-        self._operations(2, [], written - stages.keys())
-        for k, (x, later) in enumerate(kept):
-            self.stage = later - 1
+            if place := loop.places.get(node):
+                self._line(2, f"waiting_{place.vectors}[{place.number}] = {self.name(node)}")
+        self._operations(2, [], written - loop.stages.keys())
+        for k, (x, stage) in enumerate(loop.kept):
+            self.stage = stage - 1
             self._line(2, f"kept[{k}] = {self.name(x)}")
         self.stages, self.stage = {}, 0
 
@@ -298,7 +304,7 @@ class Writer:
 
     def _expression(self, node: Node) -> str:
         """Return an operation as Python source."""
-        x = [self.name(y) for y in node.operands]
+        x = [self.name(y) for y in node.read if y in node.operands or y in self.stages]
         if all(y.operator == "constant" for y in node.operands):  # else Python would compute, and refuse 1/0
             x[0] = f"number({x[0]})"
         if node.operator in INFIX:

@@ -11,8 +11,8 @@ from __future__ import annotations
 from collections.abc import Callable
 
 COMMUTATIVE = {"+", "*", "sum_low", "product_low"}
-LOW_WORDS = {"sum_low", "difference_low", "ordered_low", "product_low"}
-"""Operations that give what a rounded sum or product misses: error bounds and derivatives leave them out."""
+LOW_WORDS = {"sum_low": "+", "difference_low": "-", "ordered_low": "+", "product_low": "*"}
+"""Operations that give what the rounded result of another one misses: error bounds and derivatives leave them out."""
 FOLDABLE: dict[str, Callable[..., float]] = {
     "<": lambda x, y: float(x < y),
     "abs": abs,
@@ -80,6 +80,12 @@ class Node:
         """Mark as the low word of a double-double, which has no derivative."""
         self.graph.low_words.add(self)
         return self
+
+    @property
+    def read(self) -> tuple[Node, ...]:
+        """The operands, and last the rounded result whose low word this is, if that was traced before."""
+        high = self.graph.find(LOW_WORDS.get(self.operator, ""), *self.operands)
+        return (*self.operands, high) if high and high.position < self.position else self.operands
 
     def where(self, x, y):
         x, y = self.graph.node(x), self.graph.node(y)
