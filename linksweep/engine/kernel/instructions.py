@@ -143,6 +143,17 @@ class Instructions:
             yield k, values
             longest_chains_first(body)
 
+    def each_ahead(self, counters: list[Any], start: Callable[[Any], list[Any]]) -> Iterator[tuple[Any, list[Any]]]:
+        """Write the passes of such a loop one after the other; it yields each integer with what `start` writes."""
+        kept = start(counters[0]) if counters else []
+        for k, following in zip(counters, [*counters[1:], None], strict=False):
+            self.builder.branch(block := self.builder.append_basic_block())
+            self.builder.position_at_end(block)
+            of_next = start(following) if following else []
+            yield k, kept
+            longest_chains_first(block)
+            kept = of_next
+
     def slot(self, value: Any) -> Any:
         """Return a place in memory that holds a value."""
         with self.builder.goto_entry_block():

@@ -97,7 +97,7 @@ def search(
             compare_samples(rows, SAMPLES, state, columns)
             for k in range(columns):
                 pick_sample(rows, x, HALF, lanes, columns, k, k % lanes, k, state)
-            try_vertices(own, state, columns, lanes, evaluate)
+            try_vertices(own, state, columns, lanes, -1, evaluate)
             for signal in range(signals):
                 column, tag = signal * lanes, signal * width + block * lanes
                 for row in range(EVALUATIONS + 1):
@@ -117,13 +117,13 @@ def search(
             place_angles(best, signal * width + start * lanes, signal * width + stop * lanes)
 
 
-def try_vertices(constants, state, columns, lanes, evaluate):
+def try_vertices(constants, state, columns, lanes, number, evaluate):
     """Predict the peaks from five samples about summits, and settle them by trials."""
     predict_vertices(state, columns)
-    call(evaluate, (constants, state, X_LEFT, F_LEFT, HALF_TURN, NUMBER, 0, columns))
-    call(evaluate, (constants, state, X_RIGHT, F_RIGHT, HALF_TURN, NUMBER, 0, columns))
+    call(evaluate, (constants, state, X_LEFT, F_LEFT, HALF_TURN, number, 0, columns))
+    call(evaluate, (constants, state, X_RIGHT, F_RIGHT, HALF_TURN, number, 0, columns))
     step_to_vertices(state, columns)
-    call(evaluate, (constants, state, X_MIDDLE, F_MIDDLE, HALF_TURN, NUMBER, 0, columns))
+    call(evaluate, (constants, state, X_MIDDLE, F_MIDDLE, HALF_TURN, number, 0, columns))
     correct_vertices(state, columns)
     for k in range(0, columns, lanes):
         if last_trials(state, k, lanes) > 0:

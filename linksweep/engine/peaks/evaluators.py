@@ -9,7 +9,8 @@
     enter(front, piece, sizes, parameters, parameter_at, constants)
                                                             numbers of a piece of each design, beside those it has
 
-`evaluate` takes the numbers of rows of a table: of the place, the value, the half turn and the signal's number.
+`evaluate` takes the numbers of rows of a table: of the place, the value, the half turn and the signal's number; −1 if
+the first lanes are for the first signal, the next ones for the second and so on: each is then evaluated alone.
 
 Arrays have a row of lanes for each number, one after the other. `constants` begins with the widths of the near-toggles;
 `x` of `sample` has the tangents of samples of each half turn, with one more on either side. Those before the middle
@@ -26,7 +27,7 @@ import inspect
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import product
 from typing import Any, NamedTuple
 
@@ -101,8 +102,8 @@ class Evaluators:
         self.of_designs = [node for node in work if not self._turns(node)]
         self.at_samples = [node for node in work if self._turns(node)]
         used = {x for node in self.at_samples for x in node.operands if x.operator != "constant" and not self._turns(x)}
-        read = {x for node in self.of_designs if self._of_piece(node) for x in node.operands}
-        used |= {x for x in read if x.operator != "constant" and not self._of_piece(x)}
+        read = {x for node in self.of_designs if PIECE in node.dims for x in node.operands}
+        used |= {x for x in read if x.operator != "constant" and PIECE not in x.dims}
         widths = [plan.outputs[NEAR_WIDTH], plan.outputs[FAR_WIDTH]]
         self.constants = [*widths, *sorted(used, key=lambda node: node.position)]
         self.fixed = [node for node in plan.nodes if node.operator == "constant"]
@@ -123,11 +124,6 @@ class Evaluators:
     def _turns(self, node: Node) -> bool:
         """Return whether a node depends on the place."""
         return self.plan.index in node.dims
-
-    @staticmethod
-    def _of_piece(node: Node) -> bool:
-        """Return whether a node has a number for each piece."""
-        return PIECE in node.dims
 
     def _of_all(self) -> set[Node]:
         """Return the nodes with the same value for all designs at a sample; none where those have samples of their
@@ -179,7 +175,7 @@ class Evaluators:
         lanes = table[:, first:last]
         here = self._at(constants, lanes[x], lanes[far])
         every = [here[node].ravel() for node in self.signals]
-        lanes[value] = np.choose(lanes[signal].astype(int), every)
+        lanes[value] = np.choose(lanes[signal].astype(int) if signal >= 0 else np.arange(last), every)
 
     def _at(self, constants: np.ndarray, tangent: np.ndarray, far: Any) -> Values:
         """Return the values of all signals at places."""
@@ -351,30 +347,40 @@ class Evaluators:
         def place(lane: Any) -> Values:
             return {node: vectors.load(table.data, at(row, lane)) for node, row in ((self.tangent, x), (self.far, far))}
 
-        with self._each(vectors, constants, first, last, LANES, place) as (lane, here):
-            interpret(self.left, here, vectors.operators)
-            number, chosen = vectors.load(table.data, at(signal, lane)), here[self.signals[0]]
-            for k, node in enumerate(self.signals[1:], 1):
-                chosen = vectors.operators["where"](vectors.operators["=="](number, k), here[node], chosen)
-            vectors.store(chosen, table.data, at(value, lane))
+        lanes = [vectors.integer(k * LANES) for k in range(0 if self.even else len(self.signals))]  # none on pieces
+        with builder.if_else(builder.icmp_signed("<", signal, vectors.integer(0))) as (alone, mixed):
+            with alone:
+                each = vectors.each_ahead(lanes, partial(self._start, vectors, constants, place))
+                for (lane, kept), node in zip(each, self.signals, strict=False):
+                    left = [x for x in self._needed([node]) if x in self.left]
+                    here = interpret(left, self._here(vectors, constants, kept), vectors.operators)
+                    vectors.store(here[node], table.data, at(value, lane))
+            with mixed, self._each(vectors, constants, first, last, LANES, place) as (lane, here):
+                interpret(self.left, here, vectors.operators)
+                number, chosen = vectors.load(table.data, at(signal, lane)), here[self.signals[0]]
+                for k, node in enumerate(self.signals[1:], 1):
+                    chosen = vectors.operators["where"](vectors.operators["=="](number, k), here[node], chosen)
+                vectors.store(chosen, table.data, at(value, lane))
 
     @contextmanager
     def _each(
         self, vectors: Instructions, constants: Any, first: Any, last: Any, step: int, place: Callable[[Any], Values]
     ) -> Iterator[tuple[Any, Values]]:
-        """Emit a loop over places, which yields its counter and the values that are `kept` there.
-
-        Constants are loaded where they are used, as they would fill the registers.
-        """
-
-        def start(k: Any) -> list[Any]:
-            values = self._row(vectors, constants, self.constants) | place(k)
-            interpret([*self.fixed, *self.ahead], values, vectors.operators)
-            return [values[node] for node in self.kept]
-
+        """Emit a loop over places, which yields its counter and the values that are `kept` there."""
+        start = partial(self._start, vectors, constants, place)
         with vectors.loop_ahead(first, last, step, start) as (k, kept):
-            here = dict(zip(self.kept, kept, strict=True)) | self._row(vectors, constants, self.constants)
-            yield k, interpret(self.fixed, here, vectors.operators)
+            yield k, self._here(vectors, constants, kept)
+
+    def _start(self, vectors: Instructions, constants: Any, place: Callable[[Any], Values], k: Any) -> list[Any]:
+        """Emit the operations `ahead` at a place, and return the values that are `kept`."""
+        values = self._row(vectors, constants, self.constants) | place(k)
+        interpret([*self.fixed, *self.ahead], values, vectors.operators)
+        return [values[node] for node in self.kept]
+
+    def _here(self, vectors: Instructions, constants: Any, kept: list[Any]) -> Values:
+        """Return values that are `kept`, and constants, loaded where they are used: they would fill the registers."""
+        here = dict(zip(self.kept, kept, strict=True)) | self._row(vectors, constants, self.constants)
+        return interpret(self.fixed, here, vectors.operators)
 
     def _row(self, vectors: Instructions, array: Any, nodes: list[Node]) -> Values:
         """Return the values of nodes that an array holds one after the other."""

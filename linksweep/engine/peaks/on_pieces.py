@@ -172,7 +172,7 @@ def confirm(count, lanes, half, evaluate, constants, x, rows, columns, trials, s
                 gathered[number * lanes + lane] = constants[row, number * lanes + its]
             trials[SUMMIT, lane], trials[OTHER, lane], trials[NUMBER, lane] = summits[AT, k], summits[NEXT, k], signal
             pick_sample(rows[row], x[row], half, lanes, columns, signal * lanes + its, its, lane, trials)
-        try_vertices(gathered, trials, lanes, lanes, evaluate)
+        try_vertices(gathered, trials, lanes, lanes, NUMBER, evaluate)
         for lane in range(min(lanes, count - front)):
             place, signal = int(summits[PLACE, front + lane]), int(summits[SIGNAL, front + lane])
             row, its, tag = place // lanes, place % lanes, signal * width + place

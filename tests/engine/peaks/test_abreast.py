@@ -136,6 +136,13 @@ def test_evaluators_have_the_same_bits_compiled_and_interpreted(one_geometry):
         np.testing.assert_array_equal(constants.reshape(-1, lanes)[:2, lane], own[:2])
         np.testing.assert_array_equal(rows.reshape(SAMPLES + 1, -1, lanes)[:SAMPLES, :, lane].ravel(), own_rows)
     np.testing.assert_array_equal(table, trials)
+    wide = np.tile(trials, 3)
+    wide[3] = np.repeat([0.0, 1.0, 2.0], lanes)
+    alone, wide[1] = wide.copy(), np.nan
+    compiled.evaluate(constants, wide, 0, 1, 2, 3, 0, 3 * lanes)
+    compiled.evaluate(constants, alone, 0, 1, 2, -1, 0, 3 * lanes)
+    np.testing.assert_array_equal(alone, wide)
+    np.testing.assert_array_equal(alone[1, [0, lanes + 1]], trials[1, :2])
 
 
 def test_numbers_that_designs_share_are_the_same_as_their_own():
