@@ -31,13 +31,11 @@ from functools import cached_property, partial
 from itertools import product
 from typing import Any, NamedTuple
 
-import numpy as np
-
-from linksweep.engine.interpreter.evaluate import evaluate
 from linksweep.engine.kernel.ahead import SLOW
 from linksweep.engine.kernel.instructions import REGISTER as LANES
 from linksweep.engine.kernel.instructions import Instructions
 from linksweep.engine.kernel.machine_code import INTEGER, INTEGERS, ROW, TABLE, MachineCode, machine_code
+from linksweep.engine.peaks.interpreted import Interpreted
 from linksweep.engine.peaks.lanewise import Values
 from linksweep.engine.peaks.search import HALF, PLACED
 from linksweep.engine.trace.graph import Node
@@ -139,55 +137,12 @@ class Evaluators:
             needed.update(node.operands if node in needed else ())
         return [node for node in self.at_samples if node in needed]
 
-    # ------------------------------------------------------------------------------------------ interpreted
-
     @cached_property
     def interpreted(self) -> Functions:
         """The functions by the interpreter, for one lane: its constants are the widths, and the parameters as such."""
-        functions = self._prepare, self._share, self._sample, self._evaluate
-        return Functions(1, 2 + len(self.inputs), 0, *functions, self._enter if PIECE in self.dims else None)
-
-    def _prepare(self, front: int, designs: int, sizes, parameters, parameter_at, constants: np.ndarray) -> None:
-        digit = dict(zip(self.dims, np.unravel_index(front, tuple(sizes)), strict=True))
-        size = dict(zip(self.dims, sizes, strict=True))
-        for k, node in enumerate(self.inputs):
-            place = 0
-            for dim in (dim for dim in self.plan.loops if dim in node.dims):
-                place = place * size[dim] + digit[dim]
-            constants[2 + k] = parameters[parameter_at[k] + place]
-        here = self._at(constants, np.zeros(1), 0.0)
-        constants[:2] = [here[node].item() for node in self.constants[:2]]
-
-    def _enter(self, front: int, piece: int, sizes, parameters, parameter_at, constants: np.ndarray) -> None:
-        designs = np.prod(sizes[1:], dtype=int)
-        self._prepare(piece * designs + front, designs, sizes, parameters, parameter_at, constants)
-
-    def _share(self, constants: np.ndarray, x: np.ndarray) -> None:
-        """Do nothing: all is computed for each design."""
-
-    def _sample(self, constants: np.ndarray, x: np.ndarray, rows: np.ndarray) -> None:
-        places = x.reshape(2, -1)[:, 1:-1]
-        values = self._at(constants, places.ravel(), np.repeat([0.0, 1.0], places.shape[1]))
-        for k, signal in enumerate(self.signals):
-            rows[k : places.size * len(self.signals) : len(self.signals)] = values[signal].ravel()
-
-    def _evaluate(self, constants, table, x: int, value: int, far: int, signal: int, first: int, last: int) -> None:
-        lanes = table[:, first:last]
-        here = self._at(constants, lanes[x], lanes[far])
-        every = [here[node].ravel() for node in self.signals]
-        lanes[value] = np.choose(lanes[signal].astype(int) if signal >= 0 else np.arange(last), every)
-
-    def _at(self, constants: np.ndarray, tangent: np.ndarray, far: Any) -> Values:
-        """Return the values of all signals at places."""
-        plan, axes = self.plan, [1] * len(self.plan.loops)
-        values: Values = {
-            node: np.full(axes, x) if node.dims else x for node, x in zip(self.inputs, constants[2:], strict=True)
-        }
-        places = {self.tangent: tangent, self.far: np.broadcast_to(far, tangent.shape)}
-        values |= {node: place.reshape([*axes, -1]) for node, place in places.items()}
-        return evaluate(plan, values, dict.fromkeys(plan.loops, 1) | {plan.index: len(tangent)})
-
-    # --------------------------------------------------------------------------------------------- compiled
+        one = Interpreted(self)
+        functions = one.prepare, one.share, one.sample, one.evaluate
+        return Functions(1, 2 + len(self.inputs), 0, *functions, one.enter if PIECE in self.dims else None)
 
     @cached_property
     def compiled(self) -> Functions:

@@ -1,0 +1,60 @@
+"""Evaluate the signals of a plan by the interpreter, one design at a time: `engine.peaks.evaluators` for one lane."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from linksweep.engine.interpreter.evaluate import evaluate
+from linksweep.engine.peaks.lanewise import Values
+
+if TYPE_CHECKING:
+    from linksweep.engine.peaks.evaluators import Evaluators
+
+
+class Interpreted:
+    """The functions of evaluators without a kernel. Constants of a design are its widths and its parameters."""
+
+    def __init__(self, evaluators: Evaluators) -> None:
+        self.of = evaluators
+
+    def prepare(self, front: int, designs: int, sizes, parameters, parameter_at, constants: np.ndarray) -> None:
+        digit = dict(zip(self.of.dims, np.unravel_index(front, tuple(sizes)), strict=True))
+        size = dict(zip(self.of.dims, sizes, strict=True))
+        for k, node in enumerate(self.of.inputs):
+            place = 0
+            for dim in (dim for dim in self.of.plan.loops if dim in node.dims):
+                place = place * size[dim] + digit[dim]
+            constants[2 + k] = parameters[parameter_at[k] + place]
+        here = self._at(constants, np.zeros(1), 0.0)
+        constants[:2] = [here[node].item() for node in self.of.constants[:2]]
+
+    def enter(self, front: int, piece: int, sizes, parameters, parameter_at, constants: np.ndarray) -> None:
+        designs = np.prod(sizes[1:], dtype=int)
+        self.prepare(piece * designs + front, designs, sizes, parameters, parameter_at, constants)
+
+    def share(self, constants: np.ndarray, x: np.ndarray) -> None:
+        """Do nothing: all is computed for each design."""
+
+    def sample(self, constants: np.ndarray, x: np.ndarray, rows: np.ndarray) -> None:
+        places, signals = x.reshape(2, -1)[:, 1:-1], self.of.signals
+        values = self._at(constants, places.ravel(), np.repeat([0.0, 1.0], places.shape[1]))
+        for k, signal in enumerate(signals):
+            rows[k : places.size * len(signals) : len(signals)] = values[signal].ravel()
+
+    def evaluate(self, constants, table, x: int, value: int, far: int, signal: int, first: int, last: int) -> None:
+        lanes = table[:, first:last]
+        here = self._at(constants, lanes[x], lanes[far])
+        every = [here[node].ravel() for node in self.of.signals]
+        lanes[value] = np.choose(lanes[signal].astype(int) if signal >= 0 else np.arange(last), every)
+
+    def _at(self, constants: np.ndarray, tangent: np.ndarray, far: Any) -> Values:
+        """Return the values of all signals at places."""
+        plan, inputs, axes = self.of.plan, self.of.inputs, [1] * len(self.of.plan.loops)
+        values: Values = {
+            node: np.full(axes, x) if node.dims else x for node, x in zip(inputs, constants[2:], strict=True)
+        }
+        places = {self.of.tangent: tangent, self.of.far: np.broadcast_to(far, tangent.shape)}
+        values |= {node: place.reshape([*axes, -1]) for node, place in places.items()}
+        return evaluate(plan, values, dict.fromkeys(plan.loops, 1) | {plan.index: len(tangent)})
