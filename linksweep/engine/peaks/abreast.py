@@ -169,7 +169,6 @@ def comparison_of_half(half):
     def compare(left, first, second, right, number, summit, reach, other):
         height, number = summit_of(left, first, second, right, number)
         return with_summit(on_half(number, half, height), number + (half - 1.0), summit, reach, other)
-        return with_summit(height, number + (half - 1.0), summit, reach, other)
 
     return compare
 

@@ -40,11 +40,7 @@ HIDDEN = 0.1
 """Most that a signal may rise between a sample and its neighbours if these are as high, relative to the fall to the
 next ones. About the end of a piece signals are even, and a quartic rises by 1/48."""
 
-NARROW = 0.5
-"""Width of a near-toggle below which samples may lie too far apart to show every summit."""
-
-compare_samples_of_half, compare_samples_of_few = (comparison_of_half(half) for half in (HALF, FEW))
-compare_closely = close_comparison_of_half(HALF)
+compare_closely, compare_samples_of_few = close_comparison_of_half(HALF), comparison_of_half(FEW)
 
 
 def search(
@@ -70,7 +66,7 @@ def search(
                     front, piece, designs, lanes, sizes, parameters, parameter_at, grades, prepare, enter, sample,
                     constants, x, rows, row,
                 )  # fmt: skip
-                compare(rows[row], columns, half, narrowest(constants[row], lanes), state)
+                compare(rows[row], columns, half, state)
                 for lane in range(min(lanes, designs - front)):
                     if piece < counts[front + lane]:
                         place, own = row * lanes + lane, (block - start) * lanes + lane
@@ -104,22 +100,13 @@ def sample_piece(
     call(sample, (constants[row], x[row], rows[row]))
 
 
-def compare(rows, columns, half, width, state):
-    """Note the best summit of each signal on pieces side by side, and how high that and any other may reach."""
+def compare(rows, columns, half, state):
+    """Note the best summit of each signal on pieces side by side, and how high that and any other may reach: more
+    closely where near-toggles may be narrow, so that samples far apart may hide a summit."""
     if half == FEW:
         compare_samples_of_few(rows[(FEW - 1) * columns :], 2 * FEW + 4, state, columns)
-    elif width < NARROW:
-        compare_closely(rows[(HALF - 1) * columns :], 2 * HALF + 4, state, columns)
     else:
-        compare_samples_of_half(rows[(HALF - 1) * columns :], 2 * HALF + 4, state, columns)
-
-
-def narrowest(constants, lanes):
-    """Return the least width of a near-toggle about either end of pieces side by side."""
-    least = math.inf
-    for k in range(2 * lanes):
-        least = min(least, constants[k])
-    return least
+        compare_closely(rows[(HALF - 1) * columns :], 2 * HALF + 4, state, columns)
 
 
 def note_summits(rows, state, lanes, place, half, design, highest, summits, count, found):
