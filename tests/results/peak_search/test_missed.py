@@ -59,3 +59,14 @@ def test_a_peak_that_falls_short_is_counted():
     result["F32_peak"][2] *= 0.9
     short = missed.shortfall(result, dense)
     np.testing.assert_allclose(short, [0.0, 1e-2, 1.0 / 0.9 - 1.0], atol=1e-4)
+
+
+@pytest.mark.parametrize("name", ["four-bar with a table", "slider-crank with friction and a function", "Watt six-bar"])
+def test_a_design_has_the_same_bits_whichever_others_stand_beside_it(name):
+    """Half of these come near to a toggle, and have samples of their own."""
+    scene = missed.FAMILIES[name].scene(np.random.default_rng(7), 48)
+    together = ls.peaks(scene)
+    for design in (0, 17, 40):
+        alone = ls.peaks(ls.scene_at(scene, design=design))
+        for quantity, peak in alone.data_vars.items():
+            np.testing.assert_array_equal(peak, together[quantity].isel(design=design, missing_dims="ignore"))
