@@ -14,7 +14,8 @@ the first lanes are for the first signal, the next ones for the second and so on
 
 Arrays have a row of lanes for each number, one after the other. `constants` begins with the widths of the near-toggles;
 `x` of `sample` has the tangents of samples of each half turn, with one more on either side. Those before the middle
-mirror those after it, and share all operations whose results are the same there, or opposite.
+mirror those after it, and share all operations whose results are the same there, or opposite. Samples may also lie
+anywhere: `x` then has their tangents, and after these their half turns.
 
 Where no design dim enters the motion, as of many masses on one geometry, all designs have the same samples. `share`
 then computes once, whenever samples were placed, all that depends on nothing else: numbers behind the places in `x`,
@@ -53,6 +54,8 @@ PIECE = "_piece"
 ALONG, END = "piece_tangent", "piece_end"
 """Inputs that place a sample on a piece of the turn instead, which a turn follows there and back: the tangent of half
 the angle from the piece's start or end, and which of the two."""
+ANYWHERE, OF_HALF = "tangent_anywhere", "half_anywhere"
+"""Inputs that place a sample anywhere on a turn instead: tangent and half turn, as above."""
 NEAR_WIDTH, FAR_WIDTH = "near_toggle_near", "near_toggle_far"
 """Widths of the near-toggles in those middles."""
 SOON = 2 * LANES
@@ -92,7 +95,10 @@ class Evaluators:
         place = {node.value: node for node in plan.nodes if node.operator == "input"}
         self.even = ALONG in place
         """True where signals are the same at opposite tangents: on the way there and back."""
-        self.tangent, self.far = (place[ALONG], place[END]) if self.even else (place[TANGENT], place[FAR])
+        self.anywhere = ANYWHERE in place
+        """True where samples do not mirror each other."""
+        names = (ALONG, END) if self.even else (ANYWHERE, OF_HALF) if self.anywhere else (TANGENT, FAR)
+        self.tangent, self.far = (place[name] for name in names)
         work = [node for node in plan.nodes if node.operator not in ("input", "constant")]
         self.inputs = [node for node in place.values() if node not in (self.tangent, self.far)]
         self.dims = sorted(plan.loops, key=lambda dim: dim != PIECE)
@@ -222,13 +228,32 @@ class Evaluators:
         vectors = Instructions(builder)
         integer, of = vectors.integer, builder.mul
         size = integer(len(self.signals) * LANES)
+
+        def store(values: Values, sample: Any) -> None:
+            for s, signal in enumerate(self.signals):
+                vectors.store(values[signal], rows.data, builder.add(of(sample, size), integer(s * LANES)))
+
+        if self.anywhere:
+            with self._places_anywhere(vectors, constants, x) as (k, here):
+                store(interpret(self.left, here, vectors.operators), k)
+            return
         pairs = self._pairs_from_shared if self.shared else self._pairs
         with pairs(vectors, constants, x) as (turn, k, here, there):
             half = self._half(vectors, x)
             middle = builder.add(of(turn, of(integer(2), half)), half)
-            for values, sample in ((there, builder.sub(middle, k)), (here, builder.add(middle, k))):
-                for s, signal in enumerate(self.signals):
-                    vectors.store(values[signal], rows.data, builder.add(of(sample, size), integer(s * LANES)))
+            store(there, builder.sub(middle, k))
+            store(here, builder.add(middle, k))
+
+    def _places_anywhere(self, vectors: Instructions, constants: Any, x: Any) -> Any:
+        """Emit a loop over samples that lie anywhere."""
+        builder, integer = vectors.builder, vectors.integer
+        count = builder.udiv(x.shape[0], integer(2 * LANES))
+
+        def place(k: Any) -> Values:
+            at = builder.mul(k, integer(LANES)), builder.mul(builder.add(k, count), integer(LANES))
+            return {node: vectors.load(x.data, k) for node, k in zip((self.tangent, self.far), at, strict=True)}
+
+        return self._each(vectors, constants, integer(0), count, 1, place)
 
     @contextmanager
     def _pairs(self, vectors: Instructions, constants: Any, x: Any) -> Pairs:
@@ -302,7 +327,8 @@ class Evaluators:
         def place(lane: Any) -> Values:
             return {node: vectors.load(table.data, at(row, lane)) for node, row in ((self.tangent, x), (self.far, far))}
 
-        lanes = [vectors.integer(k * LANES) for k in range(0 if self.even else len(self.signals))]  # none on pieces
+        count = 0 if self.even or self.anywhere else len(self.signals)  # on pieces, none is evaluated alone
+        lanes = [vectors.integer(k * LANES) for k in range(count)]
         with builder.if_else(builder.icmp_signed("<", signal, vectors.integer(0))) as (alone, mixed):
             with alone:
                 each = vectors.each_ahead(lanes, partial(self._start, vectors, constants, place))

@@ -12,7 +12,7 @@ import numpy as np
 from linksweep.engine.blocks import block as new_block
 from linksweep.engine.kernel.machine_code import INTEGER, INTEGERS, ROW, TABLE, MachineCode
 from linksweep.engine.kernel.translate import translated
-from linksweep.engine.peaks import abreast, brackets, clearance, on_pieces, search, zeros
+from linksweep.engine.peaks import abreast, brackets, on_pieces, search, zeros
 from linksweep.engine.peaks.abreast import EVALUATIONS, PEAK_ANGLE
 from linksweep.engine.peaks.brackets import (
     BEST_ROWS,
@@ -212,31 +212,6 @@ def zeros_of_pieces(
     with np.errstate(all="ignore"):
         over_threads(work, blocks, 1 + len(counts) // DESIGNS_PER_THREAD, threads)
     return places.reshape(2, len(counts), most, zeros.MOST_ZEROS)
-
-
-@cache
-def compiled_clearances() -> MachineCode:
-    """Return `clearance.measure_clearances` as machine code."""
-    return translated(clearance.measure_clearances, (*[INTEGER] * 4, *OF_DESIGNS, TABLE, TABLE))
-
-
-def clearances(plan: Plan, inputs: Fields, sizes: Sizes, threads: int | None) -> np.ndarray:
-    """Return how far a plan's signals, which all have the same dims, stay from zero: the rows of `clearance`
-    (row, signal, design)."""
-    designs = laid_out(plan, inputs, sizes)
-    run: Callable = compiled_clearances() if designs.compiled else clearance.measure_clearances
-    columns = designs.lanes * len(designs.signals)
-    measured = np.empty((clearance.CLEARANCE_ROWS, columns * designs.blocks))
-
-    def work(first: int, last: int) -> None:
-        run(
-            first, last, designs.designs, designs.lanes, *designs.arguments(first, last),
-            np.zeros((clearance.CLEARANCE_ROWS, columns)), measured,
-        )  # fmt: skip
-
-    with np.errstate(all="ignore"):
-        over_threads(work, designs.blocks, 1 + designs.designs // DESIGNS_PER_THREAD, threads)
-    return measured.reshape(len(measured), len(designs.signals), -1)[..., : designs.designs]
 
 
 def search_functions(samples: int) -> Mapping[str, Callable]:

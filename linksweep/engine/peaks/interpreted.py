@@ -38,8 +38,10 @@ class Interpreted:
         """Do nothing: all is computed for each design."""
 
     def sample(self, constants: np.ndarray, x: np.ndarray, rows: np.ndarray) -> None:
-        places, signals = x.reshape(2, -1)[:, 1:-1], self.of.signals
-        values = self._at(constants, places.ravel(), np.repeat([0.0, 1.0], places.shape[1]))
+        (near, far), signals = x.reshape(2, -1), self.of.signals
+        places = near if self.of.anywhere else np.stack([near[1:-1], far[1:-1]])
+        half = far if self.of.anywhere else np.repeat([0.0, 1.0], places.shape[1])
+        values = self._at(constants, places.ravel(), half)
         for k, signal in enumerate(signals):
             rows[k : places.size * len(signals) : len(signals)] = values[signal].ravel()
 

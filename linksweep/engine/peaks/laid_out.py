@@ -51,6 +51,8 @@ class LaidOut(NamedTuple):
     """All parameters, and where each starts."""
     half: int
     """Samples on either side of the middle of each half turn."""
+    evenly: float = search.EVENLY
+    """Share of the samples that are spread evenly."""
 
     @property
     def lanes(self) -> int:
@@ -68,14 +70,16 @@ class LaidOut(NamedTuple):
     def compiled(self) -> bool:
         return self.lanes > 1
 
-    def arguments(self, first: int, last: int) -> tuple[Any, ...]:
-        """Return the arguments that searches of blocks `first` … `last` have in common, with new arrays to work in."""
+    def arguments(self, first: int, last: int, places: int | None = None) -> tuple[Any, ...]:
+        """Return the arguments that searches of blocks `first` … `last` have in common, with new arrays to work in: for
+        samples of two half turns, or for some at so many places."""
         lanes, constants = self.lanes, self.functions.constants * self.lanes
+        places = places or 2 * self.half + 2
         blocks = min(last - first, abreast.BLOCKS)
         return (
-            np.array(self.shape, dtype=np.int64), *self.parameters, grades(self.half), *self.functions.passed,
-            np.zeros((blocks, constants)),
-            np.zeros(2 * (2 * self.half + 2) * lanes + self.functions.shared),
+            np.array(self.shape, dtype=np.int64), *self.parameters, grades(self.half, self.evenly),
+            *self.functions.passed, np.zeros((blocks, constants)),
+            np.zeros(2 * places * lanes + self.functions.shared),
             np.zeros((4 * self.half + 1) * len(self.signals) * lanes),
         )  # fmt: skip
 
@@ -95,30 +99,32 @@ class LaidOut(NamedTuple):
         return np.zeros(self.functions.constants * self.lanes)
 
 
-def laid_out(plan: Plan, inputs: Fields, sizes: Sizes, half: int = search.HALF) -> LaidOut:
+def laid_out(
+    plan: Plan, inputs: Fields, sizes: Sizes, half: int = search.HALF, evenly: float = search.EVENLY
+) -> LaidOut:
     """Return the designs of a plan, whose outputs are signals, all with the same dims, and widths of near-toggles."""
     signals = tuple(name for name in plan.outputs if name not in WIDTHS)
     ready = searcher(plan, signals)
     nodes, shape = ready.evaluators.inputs, tuple(sizes[dim] for dim in ready.evaluators.dims)
     parameters, parameter_at = flat([ordered(plan, inputs[node.value]) for node in nodes])
     functions = ready.functions(math.prod(shape))
-    return LaidOut(signals, functions, shape, (parameters, parameter_at[:-1]), half)
+    return LaidOut(signals, functions, shape, (parameters, parameter_at[:-1]), half, evenly)
 
 
-@lru_cache(maxsize=2)
-def grades(half: int = search.HALF) -> np.ndarray:
+@lru_cache(maxsize=4)
+def grades(half: int = search.HALF, evenly: float = search.EVENLY) -> np.ndarray:
     """Return the half-angle tangents x of the samples of half a turn from its middle on, for each scale s of the grade;
     both ends are 1.
 
-    Most samples are spread evenly over asinh(x/s), some over x: else those far from a narrow near-toggle would be up to
-    40 degrees apart.
+    Most samples are spread evenly over asinh(x/s), a share `evenly` over x: else those far from a narrow near-toggle
+    would be up to 40 degrees apart.
     """
     scale = 0.5 ** np.arange(search.GRADES)[:, None]
     part, end = np.arange(half + 1) / half, np.arcsinh(1.0 / scale)
-    y = np.minimum(part / (1.0 - search.EVENLY), 1.0) * end
+    y = np.minimum(part / (1.0 - evenly), 1.0) * end
     for _ in range(NEWTON_STEPS):
-        error = (1.0 - search.EVENLY) * y / end + search.EVENLY * scale * np.sinh(y) - part
-        y -= error / ((1.0 - search.EVENLY) / end + search.EVENLY * scale * np.cosh(y))
+        error = (1.0 - evenly) * y / end + evenly * scale * np.sinh(y) - part
+        y -= error / ((1.0 - evenly) / end + evenly * scale * np.cosh(y))
     table = scale * np.sinh(y)
     table[:, -1] = 1.0
     return table

@@ -25,8 +25,8 @@ from linksweep.engine.run import Field
 from linksweep.engine.trace.plan import plan
 from linksweep.results.compute import compute, zeros_of
 from linksweep.results.peak_search.between import EVERYWHERE, NEVER, PARTLY
-from linksweep.results.peak_search.clear import clear_designs
 from linksweep.results.peak_search.curves import SEAM, WIDE, Curves, Extremes, parabola, zeros_and_extremes
+from linksweep.results.peak_search.full_turns import full_turns
 from linksweep.scene.pairs import Array, by_row, different_designs, in_period
 from linksweep.scene.scene import Scene
 
@@ -63,11 +63,15 @@ class Arcs(NamedTuple):
 
 
 class NearToggles(NamedTuple):
-    """Least distances from a zero: row of the design, angle [degree] and half-width [rad]."""
+    """Least distances from a zero: row of the design, angle [degree] and half-width, as tangent of half the angle."""
 
     row: Array
     angle: Array
     width: Array
+
+    def some(self, which: Array) -> NearToggles:
+        """Return those with these indices."""
+        return NearToggles(*(numbers[which] for numbers in self))
 
 
 NOWHERE = NearToggles(np.empty(0, dtype=int), np.empty(0), np.empty(0))
@@ -79,6 +83,10 @@ class Zeros(NamedTuple):
     row: Array
     angle: Array
     part: Array
+
+    def some(self, which: Array) -> Zeros:
+        """Return those with these indices."""
+        return Zeros(*(numbers[which] for numbers in self))
 
 
 Numbers = TypeVar("Numbers", Arcs, NearToggles, Zeros)
@@ -136,10 +144,12 @@ def signals_of(limits: tuple[Limit, ...]) -> tuple[str, ...]:
 
 def find_limits(scene: Scene, limits: tuple[Limit, ...], designs: Array) -> Limits:
     """Search the limits of these designs of a mechanism alone, whose period is that of its motion."""
-    clear, jumps = clear_designs(scene, limits, designs)
-    zero, none = np.zeros(len(clear)), np.full(len(clear), NO_TOGGLE)
-    some = [(Arcs(clear, zero, zero + scene.period, none, none), NOWHERE, Zeros(*jumps))]
-    others = np.setdiff1d(np.arange(len(designs)), clear, assume_unique=True)
+    whole, events, angle = full_turns(scene, limits, designs)
+    zero, none = np.zeros(len(whole)), np.full(len(whole), NO_TOGGLE)
+    arcs = Arcs(whole, zero, zero + scene.period, none, none)
+    near = NearToggles(events.row, angle, events.width).some(events.width > 0.0)
+    some = [(arcs, near, Zeros(events.row, angle, events.part).some(events.width == 0.0))]
+    others = np.setdiff1d(np.arange(len(designs)), whole, assume_unique=True)
     step = max(1, AT_ONCE // round(scene.period / scene.mechanism.period))
     some += [_search(scene, limits, designs, others[k : k + step]) for k in range(0, len(others), step)]
     arcs, near, zeros = zip(*some, strict=True)
@@ -164,7 +174,7 @@ def _tables(arcs: Arcs, near: NearToggles, zeros: Zeros, designs: int, parts: in
         by_row(arcs.row, start, designs),
         by_row(arcs.row, start + (arcs.end - arcs.start), designs),
         by_row(near.row, in_period(near.angle, period), designs),
-        by_row(near.row, np.tan(0.5 * near.width), designs),
+        by_row(near.row, near.width, designs),
         np.sort(angles, axis=1).reshape(designs, parts, angles.shape[1]),
     )
 
@@ -226,7 +236,7 @@ def _near_toggles(curves: Curves, arcs: Arcs, least: Extremes) -> NearToggles:
             rise = np.fmax(0.5 * (before + after), np.fmin(before, after))  # the end of an arc may be nearer
             width = np.where(rise > 0.0, np.sqrt(depth / rise) * np.radians(step), width)
     narrow = np.flatnonzero(width < WIDE)
-    return NearToggles(arcs.row[curves.arc(least.curve[narrow])], angle[narrow], width[narrow])
+    return NearToggles(arcs.row[curves.arc(least.curve[narrow])], angle[narrow], np.tan(0.5 * width[narrow]))
 
 
 def _pieces(curves: Curves, arcs: Arcs, toggles: Zeros, part: int) -> Arcs:
@@ -253,7 +263,7 @@ def _pieces(curves: Curves, arcs: Arcs, toggles: Zeros, part: int) -> Arcs:
 
 def _places(arcs: Arcs, near: NearToggles, designs: int, turns: bool, period: float) -> Array:
     """Return the places (arc, sample) [degree] of samples: even ones, and dense ones about near-toggles and ends."""
-    angle, width = (by_row(near.row, numbers, designs)[arcs.row] for numbers in (near.angle, np.tan(0.5 * near.width)))
+    angle, width = (by_row(near.row, numbers, designs)[arcs.row] for numbers in (near.angle, near.width))
     graded = graded_samples(angle, width)
     return on_turns(graded, period) if turns else on_arcs(arcs.start, arcs.end, graded, period)
 

@@ -25,7 +25,7 @@ from linksweep.physics.algebra import planar
 from linksweep.physics.closures import crank_angle
 from linksweep.results.peak_search.along_paths import SignalPeak, angle_in_period, put
 from linksweep.results.peak_search.between import EVERYWHERE, ONE
-from linksweep.results.peak_search.clear import ENDS, FASTEST, HALF_TURN
+from linksweep.results.peak_search.full_turns import FASTEST
 from linksweep.results.peak_search.groups import Group, all_at_once, groups
 from linksweep.results.peak_search.paths import distinct
 from linksweep.results.peak_search.poles import singular_angles
@@ -36,6 +36,8 @@ from linksweep.scene.scene import Scene
 
 AT_ONCE = 8192
 """Designs whose pieces are searched together."""
+ENDS, HALF_TURN = ("piece_from", "piece_to"), "far_half"
+"""Inputs of a piece: its ends as tangents of half the angle from the middle of a half turn; and that half turn."""
 WIDTHS = "width_at_start", "width_at_end"
 """Inputs of a piece besides its ends: the widths of near-toggles as seen from them."""
 MIDDLE, ANGLE = "piece_middle", "angle_on_piece"

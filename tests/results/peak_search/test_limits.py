@@ -1,18 +1,21 @@
 """Arcs, toggles and near-toggles that a search finds are those of the closed forms, which share no code with it."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
 import xarray as xr
+from scipy.optimize import brentq
 
 import linksweep as ls
 from benchmarks.accuracy import missed
+from linksweep.engine.peaks import laid_out
 from linksweep.engine.quantity import Limit, Row
 from linksweep.physics.algebra import planar
-from linksweep.results.peak_search.clear import clear_designs
+from linksweep.results.peak_search.full_turns import Events, full_turns
 from linksweep.results.peak_search.limits import find_limits
-from linksweep.scene.pairs import quantities_at
+from linksweep.scene.pairs import by_row, quantities_at
 
 RRR = (Limit("C", ("low", "high"), ("low_noise", "high_noise")),)
 CLOSURES = {
@@ -194,21 +197,105 @@ def test_peaks_are_those_by_closed_forms(name, without_closed_forms):
         np.testing.assert_allclose(peaks[variable], expected[variable], rtol=2e-11, err_msg=variable)
 
 
-@pytest.mark.parametrize(("name", "longest"), [("knuckle-press", 4.0), ("watt-2", 1.3)])
-def test_designs_clear_of_all_limits_are_those_in_which_a_search_finds_none(name, longest, monkeypatch):
-    press, random = ls.example(name).mechanism, np.random.default_rng(6)
-    crank = press.parts[press.topology.crank]
+def linkages(name, longest):
+    """An example with cranks of many lengths: from short ones to some that come near to toggles, or turn not fully."""
+    machine, random = ls.example(name).mechanism, np.random.default_rng(6)
+    crank = machine.parts[machine.topology.crank]
     crank = replace(crank, length=over_designs(crank.length * random.uniform(0.3, longest, 150)))
-    press = replace(press, parts={**press.parts, press.topology.crank: crank})
-    scene, designs = ls.Scene(press, 1.0).unloaded, np.arange(150)
-    clear, (row, angle, part) = clear_designs(scene, scene.table.limits, designs)
-    by_both = find_limits(scene, scene.table.limits, designs)
-    nothing = row[:0], angle[:0], part[:0]
-    monkeypatch.setattr("linksweep.results.peak_search.limits.clear_designs", lambda *_: (designs[:0], nothing))
+    return ls.Scene(replace(machine, parts={**machine.parts, machine.topology.crank: crank}), 1.0).unloaded
+
+
+def six_bars_near_toggles():
+    return missed.FAMILIES["Watt six-bar"].scene(np.random.default_rng(9), 150).unloaded
+
+
+def presses_near_toggles():
+    return missed.FAMILIES["knuckle-joint press with friction"].scene(np.random.default_rng(9), 150).unloaded
+
+
+SIDE_BY_SIDE = {
+    "presses": lambda: linkages("knuckle-press", 4.0),
+    "six-bars": lambda: linkages("watt-2", 1.3),
+    "presses near toggles": presses_near_toggles,
+    "six-bars near toggles": six_bars_near_toggles,
+}
+
+
+@pytest.mark.parametrize("name", SIDE_BY_SIDE)
+def test_limits_found_side_by_side_are_those_of_the_search_of_arcs(name, monkeypatch):
+    scene, designs = SIDE_BY_SIDE[name](), np.arange(150)
+    by_both, rows = find_limits(scene, scene.table.limits, designs), full_turns(scene, scene.table.limits, designs)[0]
+    nothing = Events(*(np.empty(0, dtype=kind) for kind in (int, float, int, float)))
+    monkeypatch.setattr(
+        "linksweep.results.peak_search.limits.full_turns", lambda *_: (designs[:0], nothing, nothing.place)
+    )
     searched = find_limits(scene, scene.table.limits, designs)
-    for both, alone in zip(by_both, searched, strict=True):
-        np.testing.assert_allclose(both, alone, rtol=0.0, atol=1e-10)
-    assert 20 < len(clear) < 140 and np.isnan(searched.near_toggle[clear]).all()
-    other = np.setdiff1d(np.flatnonzero(searched.assembly == 0.0), clear)
-    assert np.isfinite(searched.near_toggle[other]).any(axis=1).mean() > 0.2
-    assert set(np.bincount(row, minlength=150)[clear]) == ({2, 4} if press.rubs else {0})  # 4 at a stretched joint
+    np.testing.assert_array_equal(by_both.assembly, searched.assembly)
+    turning = np.flatnonzero(searched.assembly == 0.0)
+    assert len(rows) > 60 and np.isin(rows, turning).all() and len(rows) > 0.98 * len(turning)
+    for both, alone in zip(by_both[1:3], searched[1:3], strict=True):
+        np.testing.assert_allclose(both, alone, rtol=0.0, atol=1e-8)
+    np.testing.assert_allclose(by_both.zeros, searched.zeros, rtol=0.0, atol=1e-3)
+    for part, limit in enumerate(scene.table.limits):
+        row, nth = np.nonzero(np.isfinite(by_both.zeros[:, part]) & (searched.assembly == 0.0)[:, None])
+        if limit.zeros == "jump" and len(row):
+            zero = by_both.zeros[row, part, nth]
+            names = (*limit.signals, *limit.noise)
+            before, after = (quantities_at(scene, names, row, zero + away) for away in (-2e-13, 2e-13))
+            assert ((before[0] * after[0] <= 0.0) | (np.abs(before[0]) <= 10.0 * before[1])).all()
+    for row in turning:
+        compare_narrow_near_toggles(by_both, searched, row)
+
+
+def compare_narrow_near_toggles(limits, others, row):
+    """Each narrow one of the others is known, to a part of its width. It is less narrow where it is no parabola."""
+    angle, width = limits.near_toggle[row], limits.near_toggle_width[row]
+    for at, expected in zip(others.near_toggle[row], others.near_toggle_width[row], strict=True):
+        if expected < 0.03:
+            away = np.radians(np.abs(np.mod(angle - at + 180.0, 360.0) - 180.0))
+            same = (away < 0.2 * expected) & (np.abs(np.log(width / expected)) < 0.7)
+            assert same.any(), (row, at, expected, angle, width)
+
+
+def test_limits_found_side_by_side_have_the_same_bits_among_any_others_and_interpreted(monkeypatch):
+    scene = presses_near_toggles()
+    every = full_turns(scene, scene.table.limits, np.arange(150))[1]
+    some = np.array([77, 3, 149])
+    for most in (math.inf, -1):
+        monkeypatch.setattr(laid_out, "INTERPRETED_DESIGNS", most)
+        alone = full_turns(scene, scene.table.limits, some)[1]
+        for k, design in enumerate(some):
+            for one, other in zip(alone.some(alone.row == k)[1:], every.some(every.row == design)[1:], strict=True):
+                np.testing.assert_array_equal(one, other)
+
+
+def test_a_ram_that_turns_round_three_times_within_a_degree():
+    """Just before the rocker turns round, it is in line with the guide; the ram turns round there on both ways, and in
+    between. Samples some degrees apart show one of these changes of direction."""
+    a, b, c, d = 0.05, 0.2, 0.15, 0.22
+
+    def rocker(theta2):
+        x, y = a * np.cos(theta2) - d, a * np.sin(theta2)
+        return np.arctan2(y, x) - np.arccos((x * x + y * y + c * c - b * b) / (2.0 * c * np.hypot(x, y)))
+
+    outermost = np.arccos((d * d + (a + b) ** 2 - c * c) / (2.0 * d * (a + b)))
+    away = np.radians(np.geomspace(0.3, 8.0, 40))
+    lines = rocker(outermost + away)
+    before = [brentq(lambda x, line=line: rocker(x) - line, outermost - 0.3, outermost - 1e-3) for line in lines]
+    links = {"crank": a, "rod": b, "upper": c, "lower": 0.4}
+    mechanism = ls.Linkage(
+        "crank A-B, rod B-C, upper D-C, lower C-E, ram E on slide",
+        ground={"A": (0.0, 0.0), "D": (d, 0.0)},
+        guides={"slide": ls.Guide((d, 0.0), over_designs(np.degrees(lines)), 0.1)},
+        ram=ls.Slider(1.0),
+        **{role: ls.Link(length, 1.0, 0.1) for role, length in links.items()},
+    )
+    scene = ls.Scene(mechanism, 1.0).unloaded
+    rows, events, angle = full_turns(scene, scene.table.limits, np.arange(len(away)))
+    np.testing.assert_array_equal(np.sort(rows), np.arange(len(away)))
+    turns = np.radians(by_row(events.row, angle, len(away))) - outermost
+    turns = np.sort(np.mod(turns + np.pi, 2.0 * np.pi) - np.pi, axis=1)
+    near = np.where(np.abs(turns) < 0.3, turns, np.nan)
+    assert (np.isfinite(near).sum(axis=1) == 3).all()
+    expected = np.stack([np.array(before) - outermost, 0.0 * away, away], axis=1)
+    np.testing.assert_allclose(near[np.isfinite(near)].reshape(-1, 3), expected, rtol=0.0, atol=1e-8)

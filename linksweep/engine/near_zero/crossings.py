@@ -1,0 +1,115 @@
+"""Find the zeros of signals between samples on pieces of a turn, and flat places where there may be more of them.
+
+Where a signal crosses zero with hardly any slope, there may be three zeros in the place of one, as where a toggle joint
+is just stretched when it turns round. Such a flat place is noted: another look, with samples dense about it, shows.
+
+All is plain Python that is translated to machine code.
+
+Source: Dowell and Jarratt, A modified regula falsi method, BIT 11 (1971).
+"""
+
+from linksweep.engine.kernel.instructions import call
+from linksweep.engine.near_zero.samples import BEYOND, MOST, note, place, sample, used_columns
+from linksweep.engine.peaks.zeros import (
+    AT_START,
+    AT_STOP,
+    AT_TRIAL,
+    FOUND,
+    HOLDS,
+    OPEN,
+    SIDE,
+    SIGNAL_NUMBER,
+    START,
+    STEPS,
+    STOP,
+    TRIAL,
+    false_position,
+    narrow,
+)
+
+FLAT = 1e-3
+"""Half-width that is noted of a flat place: three zeros in a tenth of a degree may be taken as one."""
+
+
+def look_for_crossings(samples, half, signal, signals, crossings, counts, owner, results):
+    """Open brackets of a signal's zeros on a piece, and note flat places; what may be noise counts as positive."""
+    places, was_negative = samples[2], is_negative(samples, BEYOND, signal, signals)
+    for j in range(BEYOND + 1, places - BEYOND):
+        negative = is_negative(samples, j, signal, signals)
+        if negative != was_negative:
+            i, k = j - 1, j
+            while i > 0 and not is_clear(samples, i, signal, signals):
+                i -= 1
+            while k < places - 1 and not is_clear(samples, k, signal, signals):
+                k += 1
+            f_i, f_k = sample(samples, i, signal), sample(samples, k, signal)
+            if f_i * f_k < 0.0:
+                bracket = place(samples, i), f_i, place(samples, k), f_k
+                open_crossing(crossings, counts, samples[4], samples[5], bracket, half, signal, owner, results)
+                if k < places - 1 and k <= i + 2:
+                    flat, tangent = flat_place(samples, k - 2, signal)
+                    if flat:
+                        note(results, owner, tangent, half, signal, -FLAT)
+        was_negative = negative
+
+
+def is_negative(samples, j, signal, signals):
+    """Return whether a sample of a signal is negative by more than noise."""
+    return sample(samples, j, signal) < 0.0 and is_clear(samples, j, signal, signals)
+
+
+def is_clear(samples, j, signal, signals):
+    """Return whether a sample of a signal is clear of zero, by the third of its signals."""
+    return sample(samples, j, signal + 2 * signals) > 0.0
+
+
+def open_crossing(crossings, counts, lanes, lane, bracket, half, signal, owner, results):
+    """Open a bracket about a zero."""
+    nth = int(counts[lane])
+    if nth == MOST:
+        results[1][owner] = 1.0
+    else:
+        k = nth * lanes + lane
+        counts[lane] += 1.0
+        crossings[START, k], crossings[AT_START, k], crossings[STOP, k], crossings[AT_STOP, k] = bracket
+        crossings[SIDE, k], crossings[SIGNAL_NUMBER, k], crossings[HOLDS, k] = half, float(signal), float(OPEN)
+
+
+def flat_place(samples, j, signal):
+    """Return whether a signal that crosses zero between the middle two of four samples may do so three times, and
+    where: where the slope of the cubic through them is least, near the zero, and small or of the other sign."""
+    w, x, y, z = place(samples, j), place(samples, j + 1), place(samples, j + 2), place(samples, j + 3)
+    first, rise = sample(samples, j, signal), (sample(samples, j + 1, signal) - sample(samples, j, signal)) / (x - w)
+    slope = (sample(samples, j + 2, signal) - sample(samples, j + 1, signal)) / (y - x)
+    after = (sample(samples, j + 3, signal) - sample(samples, j + 2, signal)) / (z - y)
+    bend = (slope - rise) / (y - w)
+    change = ((after - slope) / (z - x) - bend) / (z - w)
+    at = (w + x + y - bend / change) / 3.0
+    p, q, r, step = at - w, at - x, at - y, (z - w) / 3.0
+    least = rise + bend * (p + q) + change * (p * q + q * r + r * p)
+    height = first + p * (rise + q * (bend + r * change))
+    side = 1.0 if slope > 0.0 else -1.0
+    near = side * change > 0.0 and w < at and at < z and abs(height) < 0.6 * abs(change) * step * step * step
+    return near and -2.4 * side * change * step * step < side * least and side * least < 0.25 * side * slope, at
+
+
+def find_zeros(crossings, counts, lanes, own, evaluate, front, results):
+    """Refine all brackets of zeros by the Illinois method, and note the zeros of designs from `front` on."""
+    columns = used_columns(counts, lanes)
+    for k in range(columns):
+        if k // lanes >= counts[k % lanes]:
+            crossings[HOLDS, k] = float(FOUND)
+    for _ in range(STEPS):
+        still_open = 0
+        for k in range(columns):
+            still_open += 1 if crossings[HOLDS, k] == OPEN else 0
+            crossings[TRIAL, k] = false_position(crossings, k)
+        if still_open == 0:
+            break
+        call(evaluate, (own, crossings, TRIAL, AT_TRIAL, SIDE, SIGNAL_NUMBER, 0, columns))
+        for k in range(columns):
+            if crossings[HOLDS, k] == OPEN:
+                narrow(crossings, k)
+                if crossings[HOLDS, k] == FOUND:
+                    zero, half, signal = crossings[STOP, k], crossings[SIDE, k], crossings[SIGNAL_NUMBER, k]
+                    note(results, front + k % lanes, zero, half, signal, 0.0)

@@ -1,0 +1,53 @@
+"""Find the dips and the zeros of a plan's outputs over the whole turn."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+
+import numpy as np
+
+from linksweep.engine.kernel.machine_code import INTEGER, ROW, TABLE, MachineCode
+from linksweep.engine.kernel.translate import translated
+from linksweep.engine.near_zero import dips, samples, search
+from linksweep.engine.peaks.find_peaks import DESIGNS_PER_THREAD, OF_DESIGNS
+from linksweep.engine.peaks.laid_out import laid_out
+from linksweep.engine.peaks.search import HALF
+from linksweep.engine.peaks.zeros import ZERO_ROWS
+from linksweep.engine.run import Fields, over_threads
+from linksweep.engine.trace.plan import Plan
+
+
+@cache
+def compiled_near_zero() -> MachineCode:
+    """Return `search.find_near_zero` as machine code."""
+    tables = ("f8[:, :, :]", ROW, TABLE, ROW, TABLE, ROW, "f8[:, :, :]", ROW)
+    return translated(search.find_near_zero, (*[INTEGER] * 4, *OF_DESIGNS, *tables))
+
+
+def dips_and_zeros(
+    plan: Plan, inputs: Fields, dim: str, kinds: np.ndarray, ends: np.ndarray, threads: int | None
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the narrow dips and the zeros of signals of these kinds, and where there may be more of them, as rows of
+    `samples` (row, design, nth), NaN for none; and whether each design is left: one of which a signal is negative
+    that stays positive, or noise may take it beyond zero, or that has too many dips or zeros.
+
+    Designs lie along `dim`; `ends` are those of the pieces of their turns. The plan has three signals for each kind.
+    """
+    divided = ends.shape[2] > len(samples.ENDS)
+    designs = laid_out(plan, inputs, {dim: ends.shape[1]}, samples.HALF if divided else HALF, samples.EVENLY)
+    run: Callable = compiled_near_zero() if designs.compiled else search.find_near_zero
+    places, columns = 2 * (designs.half + samples.BEYOND) + 1, samples.MOST * designs.lanes
+    events = np.full((samples.EVENT_ROWS, designs.designs, samples.MOST), np.nan)
+    left = np.zeros(designs.designs)
+
+    def work(first: int, last: int) -> None:
+        run(
+            first, last, designs.designs, designs.lanes, *designs.arguments(first, last, places), ends, kinds,
+            np.zeros((dips.DIP_ROWS, columns)), np.zeros(designs.lanes),
+            np.zeros((ZERO_ROWS, columns)), np.zeros(designs.lanes), events, left,
+        )  # fmt: skip
+
+    with np.errstate(all="ignore"):
+        over_threads(work, designs.blocks, 1 + designs.designs // DESIGNS_PER_THREAD, threads)
+    return events, left > 0.0

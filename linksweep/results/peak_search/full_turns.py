@@ -1,0 +1,170 @@
+"""Find the limits of designs that turn fully, side by side: near-toggles, and the angles at which forces jump or jam.
+
+All signals are sampled on pieces of the turn, and those that come near to zero are looked at closely. Where one part of
+a machine comes near to a toggle, those beyond it move quickly: the turn is divided there, and searched again, until no
+other such place is found. Few designs are searched more than twice.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+
+from linksweep.engine.near_zero import dips, samples
+from linksweep.engine.near_zero.find import dips_and_zeros
+from linksweep.engine.peaks.evaluators import ANYWHERE, FAR, FAR_WIDTH, NEAR_WIDTH, OF_HALF, TANGENT
+from linksweep.engine.quantity import Limit, Row, Table
+from linksweep.engine.run import Field, Fields
+from linksweep.engine.trace.plan import Plan
+from linksweep.physics.algebra import planar
+from linksweep.physics.algebra.arithmetic import Number
+from linksweep.results.peak_search.between import ONE, number_of, one_by_one
+from linksweep.scene.pairs import Array, by_row
+from linksweep.scene.scene import Scene
+
+AT_ONCE = 8192
+"""Designs searched together, so that the memory for it does not grow with a study."""
+NOISE = 1e2
+"""Distance from zero, in units of the signal's noise, from which on a signal is clear of it."""
+FASTEST = 3.0
+"""Turns of a wheel per turn of the crank up to which these samples suffice."""
+NARROW = 0.1
+"""Half-width of a near-toggle, as tangent of half the angle, below which samples must be dense about it."""
+SAME = 0.5
+"""Distance of two near-toggles, relative to their width, up to which samples about one are dense enough for both."""
+MORE_LOOKS = 3
+"""Looks at a design, besides one for each of its limits, before it is left to another search."""
+KINDS = {"toggle": dips.TOGGLE, "wedge": dips.BOUND, "dead_centre": dips.BOUND, "jump": dips.JUMP}
+"""Kinds of signals, by what their zeros are."""
+WIDTHS = (NEAR_WIDTH, FAR_WIDTH)
+WIDTH = "turn_width"
+"""Input that takes the place of the widths of near-toggles."""
+
+
+class Events(NamedTuple):
+    """Near-toggles, zeros and flat places of designs: row of the design, place on the turn as in
+    `engine.near_zero.samples`, and number of the limit; half-width of a near-toggle, 0 of a zero, and −1 times that of
+    a flat place."""
+
+    row: Array
+    place: Array
+    part: Array
+    width: Array
+
+    def some(self, which: Array) -> Events:
+        """Return those with these indices."""
+        return Events(*(numbers[which] for numbers in self))
+
+    @property
+    def angle(self) -> Array:
+        """Angle from the middle of the first half turn [degree]."""
+        half = self.place > samples.BORDER
+        return 2.0 * np.degrees(np.arctan(self.place - samples.FAR_HALF * half)) + 180.0 * half
+
+
+def _joined(*some: Events) -> Events:
+    """Return several tables as one."""
+    return Events(*map(np.concatenate, zip(*some, strict=True)))
+
+
+def full_turns(scene: Scene, limits: tuple[Limit, ...], designs: Array) -> tuple[Array, Events, Array]:
+    """Return the rows of those designs of a mechanism alone that turn fully and stay clear of all toggles; their
+    events; and the angles of these [degree]. Such designs may also be among those that are left out."""
+    simple = limits and scene.steady and scene.period == scene.mechanism.period
+    simple = simple and scene.mechanism.fastest <= FASTEST and _all_move(scene, limits, designs)
+    every = np.arange(len(designs) if simple else 0)
+    parts = np.split(every, range(AT_ONCE, len(every), AT_ONCE))
+    settled, some = zip(*(_search(scene, limits, designs, rows) for rows in parts), strict=True)
+    events = _joined(*some)
+    middle = number_of(scene, scene.mechanism.near_toggle_angle, designs)
+    return np.concatenate(settled), events, events.angle + middle[events.row]
+
+
+def _all_move(scene: Scene, limits: tuple[Limit, ...], designs: Array) -> bool:
+    """Return whether the signals of all limits change with the angle: not where parts of a linkage stand still."""
+    request, _ = _evaluated(scene, limits, designs[:1])
+    return all(scene.mechanism.index in node.dims for name, node in request.outputs.items() if name not in WIDTHS)
+
+
+def _search(scene: Scene, limits: tuple[Limit, ...], designs: Array, rows: Array) -> tuple[Array, Events]:
+    """Return the rows of those designs in some rows that turn fully, and their events."""
+    nothing = Events(np.empty(0, dtype=int), np.empty(0), np.empty(0, dtype=int), np.empty(0))
+    settled, results, cuts = [rows[:0]], [nothing], nothing
+    for _ in range(len(limits) + MORE_LOOKS):
+        if not len(rows):
+            break
+        events, left = _look(scene, limits, designs[rows], cuts)
+        before_others = (events.part < len(limits) - 1) & (events.width > 0.0) & (events.width < NARROW)
+        narrow = events.some(before_others | (events.width < 0.0))
+        again = np.bincount(narrow.row[~_are_among(narrow, cuts, len(rows))], minlength=len(rows)) > 0
+        done = ~(left | again)
+        settled.append(rows[done])
+        own = events.some(done[events.row] & (events.width >= 0.0))
+        results.append(own._replace(row=rows[own.row]))
+        again &= ~left
+        cuts = _joined(narrow, cuts.some(cuts.width < 0.0))  # a place is flat no more on pieces that end there
+        cuts = cuts.some(again[cuts.row])
+        rows, cuts = rows[again], _apart(cuts._replace(row=(np.cumsum(again) - 1)[cuts.row]))
+    return np.concatenate(settled), _joined(*results)
+
+
+def _are_among(narrow: Events, cuts: Events, designs: int) -> Array:
+    """Return whether each of these places is one at which the turn is cut, and samples are dense enough."""
+    place, width = (by_row(cuts.row, numbers, designs)[narrow.row] for numbers in (cuts.place, abs(cuts.width)))
+    own = abs(narrow.width)[:, None]
+    return ((abs(place - narrow.place[:, None]) < SAME * own) & (width < own / SAME)).any(axis=1)
+
+
+def _apart(cuts: Events) -> Events:
+    """Return cuts in order, without the wider ones of those that are nearly the same."""
+    cuts = cuts.some(np.lexsort((cuts.place, cuts.row)))
+    width = abs(cuts.width)
+    wider = np.maximum(width[1:], width[:-1])
+    same = (np.diff(cuts.row) == 0) & (np.diff(cuts.place) < SAME * wider)
+    dropped = np.flatnonzero(same) + (width[1:] >= width[:-1])[same]
+    return _apart(cuts.some(np.delete(np.arange(len(width)), dropped))) if len(dropped) else cuts
+
+
+def _look(scene: Scene, limits: tuple[Limit, ...], designs: Array, cuts: Events) -> tuple[Events, Array]:
+    """Return the events on turns with these cuts, and whether each design is left out."""
+    count = len(designs)
+    places = np.concatenate([np.tile(samples.ENDS, (count, 1)), by_row(cuts.row, cuts.place, count)], axis=1)
+    widths = np.concatenate([np.ones((count, len(samples.ENDS))), by_row(cuts.row, abs(cuts.width), count)], axis=1)
+    order = np.argsort(places, axis=1)
+    ends = np.stack([np.take_along_axis(numbers, order, axis=1) for numbers in (places, widths)])
+    signals = [(k, KINDS[limit.zeros]) for k, limit in enumerate(limits) for _ in limit.signals]
+    parts, kinds = map(np.array, zip(*signals, strict=True))
+    numbers, left = dips_and_zeros(*_evaluated(scene, limits, designs), ONE, kinds, ends, None)
+    row, nth = np.nonzero(np.isfinite(numbers[samples.PLACE]))
+    place, half, signal, width = numbers[:, row, nth]
+    return Events(row, place + samples.FAR_HALF * half, parts[signal.astype(int)], width), left
+
+
+def _evaluated(scene: Scene, limits: tuple[Limit, ...], designs: Array) -> tuple[Plan, Fields]:
+    """Return the plan of all signals of limits, each thrice, at places anywhere on a turn, and its inputs."""
+    index, signals = scene.mechanism.index, [name for limit in limits for name in limit.signals]
+    outputs = [*signals, *map("opposite of {}".format, signals), *map("clear of {}".format, signals)]
+    places = ((ANYWHERE, (index, ONE)), (OF_HALF, (index, ONE)))
+    own = {WIDTH: Field((ONE,), np.ones(len(designs)))}
+    return one_by_one(scene, designs, _table(scene.table, limits), (*outputs, *WIDTHS), own, places)
+
+
+@lru_cache(maxsize=64)
+def _table(table: Table, limits: tuple[Limit, ...]) -> Table:
+    """Return the table between samples, with opposites of the limits' signals, and their distances from zero."""
+    rows = [Row(planar.identity, (width,), (WIDTH,)) for width in WIDTHS]
+    rows += [Row(planar.identity, (name,), (own,)) for name, own in ((TANGENT, ANYWHERE), (FAR, OF_HALF))]
+    for limit in limits:
+        for name, noise in zip(limit.signals, limit.noise, strict=True):
+            rows.append(Row(planar.opposite, (f"opposite of {name}",), (name,)))
+            rows.append(Row(from_zero, (f"clear of {name}",), (name, noise)))
+    between = table.between_samples
+    return replace(between, rows=(*between.rows, *rows))
+
+
+def from_zero(signal: Number, noise: Number) -> Number:
+    """Return the distance of a signal from what may be noise, to either side."""
+    return abs(signal) - NOISE * noise
