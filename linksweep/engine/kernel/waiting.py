@@ -20,7 +20,7 @@ SHORTEST = 12
 
 
 class Gap(NamedTuple):
-    """What passes between two uses of a value: its cycles, and the operation that reads the value after it."""
+    """Gap between two uses of a value: its cycles, and the operation that reads the value after it."""
 
     value: Node
     reader: Node
@@ -38,13 +38,13 @@ class Gap(NamedTuple):
 
 def gaps(start: Mapping[Node, int]) -> list[Gap]:
     """Return the gaps between the uses of all values, from the cycles in which operations start."""
-    found, used = [], dict(start)
+    gaps, used = [], dict(start)
     for reader in sorted(start, key=lambda node: start[node]):
         for value in dict.fromkeys(reader.read):
             if value in start:
-                found.append(Gap(value, reader, used[value], start[reader]))
+                gaps.append(Gap(value, reader, used[value], start[reader]))
                 used[value] = start[reader]
-    return found
+    return gaps
 
 
 def in_memory(gaps: Sequence[Gap], length: int) -> dict[Gap, None]:

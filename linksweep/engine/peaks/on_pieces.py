@@ -45,13 +45,13 @@ compare_closely, compare_samples_of_few = close_comparison_of_half(HALF), compar
 
 def search(
     first, last, together, lanes, counts, sizes, parameters, parameter_at, grades, prepare, enter, sample, evaluate,
-    constants, x, rows, state, trials, highest, summits, brackets, gathered, found, best
+    constants, x, rows, state, trials, highest, summits, brackets, gathered, tops, best
 ):  # fmt: skip
     """Write the peaks of blocks `first` … `last` of designs, so many `together`, to `best`: a column for each design of
     each signal, one signal after the other.
 
     `counts` are the numbers of the designs' pieces. Those of a block are searched one after the other: a row of
-    `constants` and of other tables for each, and in `found` a column for each piece of each signal.
+    `constants` and of other tables for each, and in `tops` a column for each piece of each signal.
     """
     designs, pieces, columns, half = len(counts), len(constants) // together, state.shape[1], grades.shape[1] - 1
     for start in range(first, last, together):
@@ -70,12 +70,12 @@ def search(
                 for lane in range(min(lanes, designs - front)):
                     if piece < counts[front + lane]:
                         place, own = row * lanes + lane, (block - start) * lanes + lane
-                        count = note_summits(rows[row], state, lanes, place, half, own, highest, summits, count, found)
+                        count = note_summits(rows[row], state, lanes, place, half, own, highest, summits, count, tops)
         count = drop_lower(summits, count, highest)
-        confirm(count, lanes, half, evaluate, constants, x, rows, columns, trials, summits, brackets, gathered, found)
+        confirm(count, lanes, half, evaluate, constants, x, rows, columns, trials, summits, brackets, gathered, tops)
         for design in range(start * lanes, min(stop * lanes, designs)):
             place = (design // lanes - start) * pieces * lanes + design % lanes
-            keep_highest(found, place, lanes, counts[design], best, design, designs)
+            keep_highest(tops, place, lanes, counts[design], best, design, designs)
 
 
 def most_pieces(counts, front, lanes):
@@ -109,11 +109,11 @@ def compare(rows, columns, half, state):
         compare_closely(rows[(HALF - 1) * columns :], 2 * HALF + 4, state, columns)
 
 
-def note_summits(rows, state, lanes, place, half, design, highest, summits, count, found):
+def note_summits(rows, state, lanes, place, half, design, highest, summits, count, tops):
     """Note the best summit of each signal on a piece, and its highest sample; return how many summits there are."""
     columns, lane = state.shape[1], place % lanes
     signals = columns // lanes
-    width = found.shape[1] // signals
+    width = tops.shape[1] // signals
     for signal in range(signals):
         k, tag, of_design = signal * lanes + lane, signal * width + place, design * signals + signal
         value, height = rows[int(state[SUMMIT, k]) * columns + k], math.inf
@@ -123,7 +123,7 @@ def note_summits(rows, state, lanes, place, half, design, highest, summits, coun
             highest[of_design] = value
         summits[PLACE, count], summits[SIGNAL, count], summits[OF_DESIGN, count] = place, signal, of_design
         summits[AT, count], summits[HEIGHT, count], summits[NEXT, count] = state[SUMMIT, k], height, state[OTHER, k]
-        found[PEAK, tag], found[BEYOND, tag], found[EVALUATIONS, tag] = value, 0.0, 4 * half
+        tops[PEAK, tag], tops[BEYOND, tag], tops[EVALUATIONS, tag] = value, 0.0, 4 * half
         count += 1
     return count
 
@@ -147,7 +147,7 @@ def drop_lower(summits, count, highest):
     return kept
 
 
-def confirm(count, lanes, half, evaluate, constants, x, rows, columns, trials, summits, brackets, gathered, found):
+def confirm(count, lanes, half, evaluate, constants, x, rows, columns, trials, summits, brackets, gathered, tops):
     """Write the peaks about summits: those that trials confirm, or else those of brackets."""
     width, opened = len(constants) * lanes, 0
     for front in range(0, count, lanes):
@@ -163,41 +163,41 @@ def confirm(count, lanes, half, evaluate, constants, x, rows, columns, trials, s
         for lane in range(min(lanes, count - front)):
             place, signal = int(summits[PLACE, front + lane]), int(summits[SIGNAL, front + lane])
             row, its, tag = place // lanes, place % lanes, signal * width + place
-            for number in range(len(found)):
-                found[number, tag] = trials[number, lane]
-            found[EVALUATIONS, tag] += 4 * half
+            for number in range(len(tops)):
+                tops[number, tag] = trials[number, lane]
+            tops[EVALUATIONS, tag] += 4 * half
             if trials[FINAL, lane] == 0.0:
                 if opened + 2 * half > brackets.shape[1]:
-                    refine(brackets, opened, lanes, width, 0, constants, gathered, evaluate, found)
+                    refine(brackets, opened, lanes, width, 0, constants, gathered, evaluate, tops)
                     opened = 0
                 known = int(trials[SUMMIT, lane]) if trials[CONFIRMED, lane] > 0.0 else -1
                 opened = open_brackets(
                     rows[row], x[row], half, lanes, columns, signal * lanes + its, its, known, True, signal, tag,
-                    brackets, opened, found,
+                    brackets, opened, tops,
                 )  # fmt: skip
-    refine(brackets, opened, lanes, width, 0, constants, gathered, evaluate, found)
+    refine(brackets, opened, lanes, width, 0, constants, gathered, evaluate, tops)
 
 
-def keep_highest(found, place, lanes, pieces, best, design, designs):
+def keep_highest(tops, place, lanes, pieces, best, design, designs):
     """Write the highest peak of each signal on the pieces of a design, of equal ones the first; NaN where there is
     none."""
     signals = best.shape[1] // designs
-    width = found.shape[1] // signals
+    width = tops.shape[1] // signals
     for signal in range(signals):
         winner, of_piece, reach, evaluations = -1, 0, -math.inf, 0.0
         for piece in range(pieces):
             k = signal * width + place + piece * lanes
-            value = found[PEAK, k]
-            evaluations += found[EVALUATIONS, k]
-            if value + found[BEYOND, k] > reach:
-                reach = value + found[BEYOND, k]
-            if value == value and (winner < 0 or value > found[PEAK, max(winner, 0)]):
+            value = tops[PEAK, k]
+            evaluations += tops[EVALUATIONS, k]
+            if value + tops[BEYOND, k] > reach:
+                reach = value + tops[BEYOND, k]
+            if value == value and (winner < 0 or value > tops[PEAK, max(winner, 0)]):
                 winner, of_piece = k, piece
         tag = signal * designs + design
         for row in range(len(best)):
             best[row, tag] = math.nan
         if winner >= 0:
-            for row in range(len(found)):
-                best[row, tag] = found[row, winner]
+            for row in range(len(tops)):
+                best[row, tag] = tops[row, winner]
             best[BEYOND, tag] = reach - best[PEAK, tag] if abs(best[PEAK, tag]) < math.inf else 0.0
             best[EVALUATIONS, tag], best[OF_PIECE, tag] = evaluations, float(of_piece)

@@ -198,8 +198,8 @@ def _fused(
     if len(designs) == math.prod(scene.inputs.sizes.values()):
         inputs = scene.inputs
         request = _between_samples(scene, signals)
-        found = find_peaks(request, signals, inputs.fields, inputs.sizes, smooth, threads)
-        return {signal: peak for some in found for signal, peak in _at_angles(scene, some).items()}
+        results = find_peaks(request, signals, inputs.fields, inputs.sizes, smooth, threads)
+        return {signal: peak for some in results for signal, peak in _at_angles(scene, some).items()}
     peaks = {signal: nothing(field) for signal, field in empty(scene, signals).items()}
     places = ((TANGENT, (scene.mechanism.index, ONE)), (FAR, (scene.mechanism.index,)))
     for group in groups(scene, signals, designs, AT_ONCE):

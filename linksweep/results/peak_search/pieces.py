@@ -75,7 +75,7 @@ class Pieces(NamedTuple):
 
     @property
     def exist(self) -> Array:
-        """Whether pieces (design, piece) are a design's own, and do not only fill up its row."""
+        """True for pieces (design, piece) that are a design's own, and do not only fill up its row."""
         return np.arange(self.start.shape[1]) < self.counts[:, None]
 
     def some(self, rows: Array) -> Pieces:
@@ -132,8 +132,8 @@ def follow_pieces(scene: Scene, designs: Array, peaks: dict[str, SignalPeak], th
     at_once = AT_ONCE if scene.steady else LOADED_AT_ONCE
     for whole in groups(scene, tuple(peaks), designs, at_once, at_once) if peaks else ():
         for half, group in _by_samples(whole):
-            found = highest_on_pieces(group, _pieces(group, half, threads), tuple(peaks), half, threads)
-            for signal, numbers in found.items():
+            highest = highest_on_pieces(group, _pieces(group, half, threads), tuple(peaks), half, threads)
+            for signal, numbers in highest.items():
                 put(peaks[signal], group, numbers)
 
 
@@ -155,13 +155,13 @@ def highest_on_pieces(
     group, pieces, back = group.some(order), pieces.some(order), np.argsort(order)
     request, inputs = _evaluated(group, pieces, signals)
     frame, period = group.number(group.scene.mechanism.near_toggle_angle), group.scene.period
-    found = {}
+    highest = {}
     for signal, peak in find_peaks_on_pieces(request, signals, inputs, ONE, pieces.counts, half, threads).items():
         value, tangent, far, bound, samples, piece = peak
         at = np.arange(len(value)), np.nan_to_num(piece).astype(int)
         angle = angle_in_period(_angles(pieces, inputs, at, tangent, far) + frame, period)
-        found[signal] = value[back], angle[back], bound[back], samples[back]
-    return found
+        highest[signal] = value[back], angle[back], bound[back], samples[back]
+    return highest
 
 
 # ------------------------------------------------------------------------------------------------- pieces
@@ -239,12 +239,12 @@ def _cut_at_zeros(group: Group, pieces: Pieces, name: str, half: int, threads: i
     """Return the pieces, cut at the zeros of a quantity."""
     request, inputs = _evaluated(group, pieces, (name,))
     tangent, far = zeros_of_pieces(request, inputs, ONE, pieces.counts, half, threads)
-    found = np.nonzero(np.isfinite(tangent))
-    if not len(found[0]):
+    zeros = np.nonzero(np.isfinite(tangent))
+    if not len(zeros[0]):
         return pieces
-    angle = _angles(pieces, inputs, found[:2], tangent[found], far[found])
+    angle = _angles(pieces, inputs, zeros[:2], tangent[zeros], far[zeros])
     designs, start = len(pieces.counts), np.where(pieces.exist, pieces.start, np.nan)
-    cuts = np.sort(np.concatenate([start, by_row(found[0], angle, designs)], axis=1), axis=1)
+    cuts = np.sort(np.concatenate([start, by_row(zeros[0], angle, designs)], axis=1), axis=1)
     cut = between(cuts, start[:, 0] + group.scene.period, designs)
     of = (cut.start[:, :, None] >= start[:, None, :]).sum(axis=-1) - 1
     return cut._replace(directions=np.take_along_axis(pieces.directions, of[None], axis=2))

@@ -50,8 +50,8 @@ def follow_unbounded(scene: Scene, designs: Array, peaks: dict[str, SignalPeak],
             if len(bounded):
                 some = arcs.some(np.flatnonzero((known & ~upwards)[arcs.row]))
                 part = group.some(some.row)
-                found = highest_on_pieces(part, _pieces(part, some), (signal,), HALF, threads)
-                raise_to(peaks[signal], part, found[signal])
+                highest = highest_on_pieces(part, _pieces(part, some), (signal,), HALF, threads)
+                raise_to(peaks[signal], part, highest[signal])
     return np.sort(np.concatenate(others))
 
 
