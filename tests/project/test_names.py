@@ -5,6 +5,7 @@ import importlib
 import re
 import tomllib
 from fnmatch import fnmatch
+from importlib import metadata
 from pathlib import Path
 
 import pytest
@@ -49,9 +50,9 @@ def test_the_version_is_that_of_the_installed_package(monkeypatch):
     assert ls.__version__ == declared()["project"]["version"]
 
     def missing(name):
-        raise version.PackageNotFoundError(name)
+        raise metadata.PackageNotFoundError(name)
 
-    monkeypatch.setattr(version, "version", missing)
+    monkeypatch.setattr(metadata, "version", missing)
     assert version.installed_version.__wrapped__() == "0+unknown"
 
 
