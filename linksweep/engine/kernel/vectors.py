@@ -221,7 +221,7 @@ class _Writer:
         self.head: Any = None
         """The block before the outermost loop that is being written."""
         self.memories: list[_Memory] = []
-        """Those of the loop in stages."""
+        """Memory in which values of the loop in stages wait."""
 
     def names(self) -> dict[str, Any]:
         """Return the functions that a function's source may use."""

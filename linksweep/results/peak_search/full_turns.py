@@ -55,7 +55,7 @@ class Events(NamedTuple):
     width: Array
 
     def some(self, which: Array) -> Events:
-        """Return those with these indices."""
+        """Return the events with these indices."""
         return Events(*(numbers[which] for numbers in self))
 
     @property
