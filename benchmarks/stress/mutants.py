@@ -28,7 +28,7 @@ TAKEN = ("linksweep", "tests", "benchmarks", "pyproject.toml")
 ALL_IN_TURN = ("-p", "no:cacheprovider", "-n", "0", "-m", "")
 """Options of pytest: long tests too, and one after the other, so that -x names the first failure."""
 FOREVER = 600.0
-"""Seconds after which tests that do not end count as failed."""
+"""Seconds after which the tests of a mutant, which may never end, count as failed."""
 NO_TESTS = 5
 """Exit code of pytest where all tests are deselected: then nothing catches anything."""
 
@@ -59,8 +59,8 @@ class Copy:
     folder: Path
     red: tuple[str, ...] = ()
 
-    def failures(self, tests: Iterable[str], *options: str) -> list[str]:
-        """Return the tests of these files that fail."""
+    def failures(self, tests: Iterable[str], *options: str, patience: float | None = None) -> list[str]:
+        """Return the tests of these files that fail; they may take `patience` seconds, or any time."""
         left_out = [f"--deselect={name}" for name in self.red]
         command = [sys.executable, "-m", "pytest", *ALL_IN_TURN, "--tb=no", "-rfE", *options, *left_out]
         # no .pyc: a source planted and restored within a second would be taken for the same
@@ -71,7 +71,7 @@ class Copy:
                 [*command, *(f"tests/{name}" for name in tests)],
                 cwd=self.folder,
                 env=surroundings,
-                timeout=FOREVER,
+                timeout=patience,
                 capture_output=True,
                 text=True,
             )
@@ -93,7 +93,7 @@ class Copy:
     def catcher(self, mutant: Mutant) -> str | None:
         """Return the test that catches a mutant, or None where it survives."""
         with self.planted(mutant):
-            return next(iter(self.failures(mutant.tests, "-x")), None)
+            return next(iter(self.failures(mutant.tests, "-x", patience=FOREVER)), None)
 
 
 def mutants(path: Path = LIST) -> list[Mutant]:
