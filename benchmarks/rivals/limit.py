@@ -26,6 +26,8 @@ FLAGS = ("-O3", "-march=native", "-fno-math-errno", "-fno-trapping-math", "-fope
 SCHEDULED = (*FLAGS, "-mprefer-vector-width=512", "-fschedule-insns")
 """Flags for vectors by hand: instructions in the order in which their operands are ready, though more results wait in
 memory then."""
+NO_AVX512 = ("-march=x86-64-v3", "-mtune=native")
+"""Flags, after others, for AVX2 and nothing wider."""
 LANES = 16  # as in limit.c
 
 

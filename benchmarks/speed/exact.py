@@ -170,7 +170,7 @@ def _shared(size: Size) -> list[Row]:
         for name, job in jobs.items()
     }
     kernels = {f"{name}: kernel": kernel_of(call).call for name, call in sums.items()}
-    goals = ((exact, (0.7, 0.35)), (sums, (0.35, 0.35)), (kernels, (0.35, 0.35)))
+    goals = ((exact, (0.5, 0.3)), (sums, (0.35, 0.35)), (kernels, (0.35, 0.35)))
     return [row for calls, goal in goals for row in _against_first(race(calls, size), goal)]
 
 

@@ -9,6 +9,7 @@ import numpy as np
 import linksweep as ls
 from benchmarks.cases import GENERAL, NINE, Size, scene, stacked
 from benchmarks.rivals import limit, peers
+from benchmarks.speed import avx2
 from benchmarks.speed.kernel import eliminations, kernel_of, way
 from benchmarks.timing import FASTER, SHARE, WALL, Row, race
 
@@ -56,9 +57,10 @@ def rows(size: Size) -> list[Row]:
         row(WALL, SWEEP, KERNEL, 10e-9 * size.angles),
         row(WALL, DEFAULT, SWEEP, 18e-9 * size.angles),
         row(FASTER, KERNEL, LAPACK, 250),
-        row(SHARE, KERNEL, C, 1.3),
+        row(SHARE, KERNEL, C, 1.05),
         row(SHARE, KERNEL, WIDE, 1.1),
         row(SHARE, WIDE, C),
+        *avx2.rows(size),
         row(FASTER, C, LAPACK),
         row(FASTER, BLOCKS, LAPACK),
         row(FASTER, CLOSED, LAPACK),

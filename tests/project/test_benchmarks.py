@@ -17,16 +17,16 @@ from benchmarks.timing import FASTER, SHARE, WALL, Race, Row, cores, race
 SLOW = ("missed", "first", "growth", "skipping")
 CHECKED = {"solves", "grids", "unknowns", "peaks", "skipping", "mechanisms", "linkages", "warm", "threads"}
 GOALS = {
-    "unknowns": {60, 250, 1.3, 1.1, 5, 10e-9 * QUICK.angles, 18e-9 * QUICK.angles},
+    "unknowns": {60, 250, 1.05, 1.1, 5, 10e-9 * QUICK.angles, 18e-9 * QUICK.angles},
     "peaks": {200, 0.8},
-    "exact": {0.35, 0.5, 0.7, 1.0, 400},
+    "exact": {0.3, 0.35, 0.5, 1.0, 400},
     "missed": set(),
     "skipping": {0.35, 0.75},
     "solves": set(),
     "grids": set(),
     "growth": {0.25},
     "mechanisms": {1.0, 1.5},
-    "linkages": {80.0, 150.0, 1.0, 5.0},
+    "linkages": {250.0, 1.0, 5.0},
     "warm": {0.25e-3, 0.45e-3},
     "first": {0.3, 1.0, 1.5},
     "threads": {1.7},
