@@ -115,7 +115,8 @@ class Runner(Patience):
 
     def fused_for(self, designs: int, profiles: np.ndarray, at: np.ndarray) -> Writer:
         """Return the kernel for this many designs in the innermost loop, and the samples of its profiles."""
-        if -(-designs // LANES) * LANES > MOST_REPEATED * designs or not fits_side_by_side(self.fused):
+        pays = -(-designs // LANES) * LANES <= MOST_REPEATED * designs
+        if designs < LANES or not pays or not fits_side_by_side(self.fused):  # else lanes would write behind results
             return self.fused
         known, key = self.latest
         if known is not profiles:

@@ -47,6 +47,8 @@ MACHINES = {
     ),
 }
 """Scenes with at least one and a half vectors of designs in the innermost loop."""
+FEW = 12
+"""Designs in the innermost loop that do not fill a vector."""
 OF = {"masses on one geometry": ("F32", "F32_mean", "T12_rms", "T12")}
 
 
@@ -61,6 +63,15 @@ def test_designs_side_by_side_have_the_bits_of_those_interpreted(name):
         assert 'running("largest_sample"' in kernel_of(largest).sources[0]
         xr.testing.assert_identical(largest(), expected)
         xr.testing.assert_identical(largest(threads=2), expected)
+
+
+def test_designs_that_do_not_fill_a_vector_have_their_own_results():
+    """Lanes without a design would write behind the last one, to the results of other designs and signals."""
+    few = replace(scene(batch(2, *ALL)), omega2=xr.DataArray(np.linspace(10.0, 30.0, FEW), dims="speed"))
+    with way("interpreted"):
+        expected = ls.peaks(few, ("F32", "T12"), theta2=72)
+    with way("compiled"):
+        xr.testing.assert_identical(ls.peaks(few, ("F32", "T12"), theta2=72, threads=1), expected)
 
 
 def test_samples_are_the_same_or_opposite_at_minus_theta_by_their_bits():
