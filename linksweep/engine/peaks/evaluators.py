@@ -115,15 +115,16 @@ class Evaluators:
         """Operations at a place that lead to divisions and roots, which the place shares with its mirror."""
         self.left = [node for node in self.at_samples if node not in set(self.ahead)]
         """The operations that are left to do there."""
-        used = {x for node in self.left for x in node.operands} | set(self.signals)
-        self.kept = [node for node in [self.tangent, self.far, *self.ahead] if node in used]
-        """The values that those take from the place and from the operations before."""
         of_all = self._of_all()
         self.own = [node for node in self.at_samples if node not in of_all]
         """The operations at samples that each design does for itself."""
         used = {x for node in self.own for x in node.operands} & of_all
         self.shared = sorted(used, key=lambda node: node.position)
         """The values that those take from what all designs have in common."""
+        used |= {x for node in self.left for x in node.operands} | set(self.signals)
+        self.kept = [node for node in [self.tangent, self.far, *self.ahead] if node in used]
+        """The values that operations left to do, and those of each design, take from the place and from the operations
+        before."""
 
     def _turns(self, node: Node) -> bool:
         """Return whether a node depends on the place."""

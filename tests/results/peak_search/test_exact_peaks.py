@@ -218,6 +218,19 @@ def test_a_design_alone_has_the_bits_that_it_has_among_others(scene):
             np.testing.assert_array_equal(values, whole[name].isel(design=k, missing_dims="ignore"), err_msg=name)
 
 
+def test_branches_of_one_geometry_have_the_bits_that_each_has_alone(monkeypatch):
+    monkeypatch.setattr(laid_out, "INTERPRETED_DESIGNS", -1)
+    scene = replace(PRESS, omega2=xr.DataArray([20.0, 30.0], dims="speed"))
+
+    def branch(name: str) -> xr.Dataset:
+        return ls.peaks(replace(scene, mechanism=replace(PRESS.mechanism, branch=name)), of=["F32", "T12"])
+
+    of_both = branch("both")
+    for name in ("open", "crossed"):
+        for result, values in branch(name).data_vars.items():
+            np.testing.assert_array_equal(of_both.sel(branch=name)[result], values, result)
+
+
 @pytest.mark.parametrize("of", [["F32"], pytest.param(OF, marks=pytest.mark.long)])
 def test_compiled_and_interpreted_searches_give_the_same_bits(of, monkeypatch):
     monkeypatch.setattr(laid_out, "INTERPRETED_DESIGNS", math.inf)
