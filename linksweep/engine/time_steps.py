@@ -72,6 +72,7 @@ class Systems:
         """Integrate from states the systems whose outcome is `GOES_ON`, until all stop, or for so many steps."""
         rows, outcome = np.arange(len(start)), outcome.copy()
         time, state, slope = np.zeros(len(start)), start.copy(), self.slopes(rows, start)
+        outcome[(outcome == GOES_ON) & ~np.isfinite(slope).all(axis=1)] = GIVEN_UP
         size = FIRST * self.longest(state, slope)
         kept = [(rows, time.copy(), state.copy(), slope.copy())]
         rows = np.flatnonzero(outcome == GOES_ON)

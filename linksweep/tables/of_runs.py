@@ -27,7 +27,8 @@ FAILURES = {
     "settles_below": "Its speed settles below the one that is sought.",
     "keeps_turning": "It keeps turning: over a cycle, friction, dampers and loads take no energy away.",
     "takes_more_turns": "It takes more turns than it was allowed.",
-    "breaks_off": "It breaks off: the machine does not turn fully, or jams; a check of the scene says why.",
+    "breaks_off": "It breaks off: the machine does not turn fully, or jams, and a check of the scene says why; "
+    "or nothing that turns with its crank has inertia.",
 }
 """Sentence for each status that is not ok."""
 

@@ -85,11 +85,12 @@ class Crank:
         return self.scene.mechanism.drives[self.scene.drive]
 
     def rise(self, pairs: Pairs, speed: Array) -> Array:
-        """Return dw/dt at w; NaN where the status of the machine is not ok."""
+        """Return dw/dt at w; NaN where the status of the machine is not ok, or nothing has inertia."""
         rows, still = pairs.designs, np.zeros(len(speed))
         torque, inertia, status = self.values((self.torque, "reduced_inertia", "status"), pairs, speed, still)
         excess = np.where(status == 0.0, self.drive.torque(rows, speed) - self.direction[rows] * torque, np.nan)
         total = inertia + self.drive.inertia[rows]
+        total = np.where(total > 0.0, total, np.nan)  # nothing that turns with the crank has inertia: no rise
         if "friction_power" not in self.scene.table.quantity and self.drive.loss is None:
             return excess / total
         return self._with_losses(pairs, speed, excess - self.loss(rows, speed, still), total)

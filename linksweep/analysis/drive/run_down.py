@@ -77,8 +77,8 @@ def run_down(
         - `time` [s], `angle` [degree], `speed` [rad/s] and `acceleration` [rad/s²] over `step`, the ends of the steps
           of integration; NaN after the last one. Crank angles count whole turns, from `start` on
         - `status`: `ok`; `keeps_turning`: a cycle takes no speed away, as without friction and dampers;
-          `takes_more_turns`; `breaks_off`: the machine does not turn fully, or jams. All but the steps is NaN where it
-          is not ok.
+          `takes_more_turns`; `breaks_off`: the machine does not turn fully, jams, or nothing that turns with its crank
+          has inertia. All but the steps is NaN where it is not ok.
 
     Raises
     ------

@@ -85,8 +85,8 @@ def run_up(
           the ends of the steps of integration; NaN after the last one. Crank angles count whole turns, from `start` on
         - `status`: `ok`; `does_not_start`: at rest the motor does not overcome weights, loads and friction; `stalls`:
           the crank comes to rest on its way; `settles_below`: its speed repeats from cycle to cycle, below the one that
-          is sought; `takes_more_turns`; `breaks_off`: the machine does not turn fully, or jams. All but the steps is
-          NaN where it is not ok.
+          is sought; `takes_more_turns`; `breaks_off`: the machine does not turn fully, jams, or nothing that turns
+          with its crank has inertia. All but the steps is NaN where it is not ok.
 
     Raises
     ------

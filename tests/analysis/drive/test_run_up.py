@@ -233,6 +233,14 @@ def test_a_machine_that_does_not_turn_fully_breaks_off():
     assert meaning(run) == ["breaks_off"] and np.isnan(run.operating_speed)
 
 
+def test_a_machine_without_inertia_at_its_dead_centre_breaks_off_there():
+    """At 0 degrees the slider stands still: nothing but a rotor turns with a crank and a rod without masses."""
+    inertia = xr.DataArray([0.0, 1e-3], dims="rotor")
+    light = ls.SliderCrank(*(ls.Link(link[0], 0.0, 0.0) for link in (CRANK, ROD)), slider_mass=0.4)
+    run = ls.run_up(ls.Scene(light, 1.0), ls.DCMotor(stall_torque=1.5, no_load_speed=20.0, inertia=inertia), of=["F32"])
+    assert meaning(run) == ["breaks_off", "ok"]
+
+
 def test_friction_holds_a_crank_at_rest():
     """The slider's weight presses with 3.9 N on its guide: friction of 0.1 takes about 0.03 N m of the crank."""
     light = [ls.Link(link[0], 0.0, 0.0) for link in (CRANK, ROD)]
