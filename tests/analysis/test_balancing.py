@@ -312,6 +312,12 @@ def test_a_balanced_machine_is_not_changed():
             ),
             "scene has designs over s: give one",
         ),
+        (
+            lambda: ls.best_counterweights(
+                replace(PRESS, mechanism=replace(PRESS.mechanism, branch="both")), {"Fs_rms": 1.0}, radius=1.0
+            ),
+            "scene has designs over branch: give one",
+        ),
     ],
 )
 def test_refusals_of_objectives(call, message):

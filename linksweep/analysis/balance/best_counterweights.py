@@ -120,7 +120,7 @@ def best_counterweights(
     [81.54, 6.14]
     """
     require(scene, "bodies")
-    if designs := design_sizes(scene):
+    if designs := [*design_sizes(scene), *scene.mechanism.both_branches]:
         refuse([f"scene has designs over {', '.join(designs)}: give one, as ls.scene_at(scene, ...)"])
     sizes = _weights(scene, minimize)
     carriers = scene.mechanism.parts
