@@ -73,8 +73,8 @@ def geometry(
     Dataset
         Results over the design dims:
 
-        - `swing` [degree] of a rocker, or `stroke` [m] of a slider; NaN where it does not swing, or the crank does not
-          turn fully
+        - `swing` [degree] of a rocker, or `stroke` [m] of a slider; NaN where it does not swing, the crank does not
+          turn fully, or a four-bar passes through two change points, as a parallelogram and a kite do
         - `time_ratio` [1]: the slower way's crank angle over the faster one's
         - `reversal_angle` (…, limit) [degree]: crank angles at which the output reverses, stretched and folded; of an
           inverted slider-crank over the dim `reversal`

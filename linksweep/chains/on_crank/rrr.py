@@ -127,9 +127,11 @@ def _assembly(a: Array, b: Array, c: Array, d: Array) -> tuple[Array, Array]:
 
 
 def _where_it_turns(a: Array, b: Array, c: Array, d: Array, angle: Array) -> Array:
-    """Return an angle of a four-bar whose crank turns fully; NaN of any other."""
+    """Return an angle of a four-bar whose crank turns fully; NaN of any other, and of a parallelogram or a kite, which
+    passes through its two change points and turns round elsewhere, if at all."""
     partly, never = _assembly(a, b, c, d)
-    return np.where(partly | never, np.nan, angle)
+    low, _, high, _ = extremes(a, b, c, d)
+    return np.where(partly | never | ((low == 0.0) & (high == 0.0)), np.nan, angle)
 
 
 def _grashof(a: Array, b: Array, c: Array, d: Array) -> Array:
