@@ -14,7 +14,7 @@ from benchmarks.cases import Size
 from benchmarks.speed.exact import crank_rockers
 from benchmarks.speed.kernel import kernel_of, way
 from benchmarks.timing import SHARE, Row, race
-from linksweep.engine.peaks.search import SAMPLES
+from linksweep.engine.peaks.samples import SAMPLES
 from linksweep.engine.trace.derivatives import derivative_of
 from linksweep.engine.trace.plan import plan
 from linksweep.results.compute import compute

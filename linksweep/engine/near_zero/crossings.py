@@ -11,20 +11,18 @@ Source: Dowell and Jarratt, A modified regula falsi method, BIT 11 (1971).
 from linksweep.engine.kernel.instructions import call
 from linksweep.engine.near_zero.samples import BEYOND, MOST, note, place, sample, used_columns
 from linksweep.engine.peaks.zeros import (
-    AT_START,
-    AT_STOP,
     AT_TRIAL,
     FOUND,
     HOLDS,
     OPEN,
     SIDE,
     SIGNAL_NUMBER,
-    START,
     STEPS,
     STOP,
     TRIAL,
     false_position,
     narrow,
+    open_zero,
 )
 
 FLAT = 1e-3
@@ -69,10 +67,8 @@ def open_crossing(crossings, counts, lanes, lane, bracket, half, signal, owner, 
     if nth == MOST:
         results[1][owner] = 1.0
     else:
-        k = nth * lanes + lane
         counts[lane] += 1.0
-        crossings[START, k], crossings[AT_START, k], crossings[STOP, k], crossings[AT_STOP, k] = bracket
-        crossings[SIDE, k], crossings[SIGNAL_NUMBER, k], crossings[HOLDS, k] = half, float(signal), float(OPEN)
+        open_zero(crossings, nth * lanes + lane, bracket, bracket[0], half, signal, owner, OPEN)
 
 
 def flat_place(samples, j, signal):

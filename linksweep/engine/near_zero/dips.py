@@ -18,24 +18,16 @@ from linksweep.engine.peaks.brackets import (
     DONE,
     F1,
     F2,
-    F3,
-    FA,
     FAR,
     FB,
-    FC,
-    FIRST_WIDTH,
-    FLOOR,
     ROUNDS,
     SIGNAL,
     TOP_X,
-    WIDTH,
     X1,
     X2,
-    X3,
-    XA,
-    XB,
-    XC,
+    evaluate_trials,
     insert_trials,
+    open_bracket,
     place_trials,
 )
 from linksweep.engine.peaks.lanewise import lanewise
@@ -76,7 +68,7 @@ def look_for_dips(samples, half, signal, signals, kind, dips, counts, owner, res
             f_a, f_b, f_c = side * sample(samples, i, signal), side * here, side * sample(samples, k, signal)
             if f_a > higher and f_c > higher and may_matter(a, f_a, b, f_b, c, f_c, kind):
                 number = float(signal + signals) if side > 0.0 else float(signal)  # dips are peaks of opposites
-                bracket = a, -f_a, b, -f_b, c, -f_c
+                bracket = (a, -f_a), (b, -f_b), (c, -f_c)
                 open_dip(dips, counts, samples[4], samples[5], bracket, half, number, signal, owner, results)
         before, here = here, after
 
@@ -95,12 +87,11 @@ def open_dip(dips, counts, lanes, lane, bracket, half, number, signal, owner, re
     if nth == MOST:
         results[1][owner] = 1.0
     else:
-        k, (a, f_a, _b, _f_b, c, f_c) = nth * lanes + lane, bracket
+        k, (before, top, after) = nth * lanes + lane, bracket
         counts[lane] += 1.0
-        dips[XA, k], dips[FA, k], dips[XB, k], dips[FB, k], dips[XC, k], dips[FC, k] = bracket
-        dips[A, k], dips[F_A, k], dips[C, k], dips[F_C, k] = a, f_a, c, f_c
-        dips[FAR, k], dips[SIGNAL, k], dips[OWN, k] = half, number, float(signal)
-        dips[WIDTH, k], dips[FIRST_WIDTH, k], dips[FLOOR, k], dips[COUNTS, k] = 4.0 * (c - a), c - a, 0.0, 1.0
+        open_bracket(dips, k, before, top, after, half, number, owner, 0.0)
+        (dips[A, k], dips[F_A, k]), (dips[C, k], dips[F_C, k]) = before, after
+        dips[OWN, k], dips[COUNTS, k] = signal, 1.0
 
 
 def refine_dips(dips, counts, lanes, own, evaluate):
@@ -116,9 +107,7 @@ def refine_dips(dips, counts, lanes, own, evaluate):
         if still_open == 0:
             break
         place_trials(dips, columns)
-        call(evaluate, (own, dips, X1, F1, FAR, SIGNAL, 0, columns))
-        call(evaluate, (own, dips, X2, F2, FAR, SIGNAL, 0, columns))
-        call(evaluate, (own, dips, X3, F3, FAR, SIGNAL, 0, columns))
+        evaluate_trials(dips, 0, columns, own, evaluate)
         insert_trials(dips, columns)
         for k in range(columns):
             if dips[COUNTS, k] > 0.0 and dips[DONE, k] > 0.0:

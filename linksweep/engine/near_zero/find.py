@@ -2,27 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import cache
-
 import numpy as np
 
-from linksweep.engine.kernel.machine_code import INTEGER, ROW, TABLE, MachineCode
-from linksweep.engine.kernel.translate import translated
+from linksweep.engine.kernel.machine_code import INTEGER, ROW, TABLE
 from linksweep.engine.near_zero import dips, samples, search
-from linksweep.engine.peaks.find_peaks import DESIGNS_PER_THREAD, OF_DESIGNS
-from linksweep.engine.peaks.laid_out import laid_out
-from linksweep.engine.peaks.search import HALF
+from linksweep.engine.peaks.laid_out import OF_DESIGNS, laid_out, over_blocks
+from linksweep.engine.peaks.samples import HALF
 from linksweep.engine.peaks.zeros import ZERO_ROWS
-from linksweep.engine.run import Fields, over_threads
+from linksweep.engine.run import Fields
 from linksweep.engine.trace.plan import Plan
 
-
-@cache
-def compiled_near_zero() -> MachineCode:
-    """Return `search.find_near_zero` as machine code."""
-    tables = ("f8[:, :, :]", ROW, TABLE, ROW, TABLE, ROW, "f8[:, :, :]", ROW)
-    return translated(search.find_near_zero, (*[INTEGER] * 4, *OF_DESIGNS, *tables))
+KINDS = (*[INTEGER] * 4, *OF_DESIGNS, "f8[:, :, :]", ROW, TABLE, ROW, TABLE, ROW, "f8[:, :, :]", ROW)
+"""Kinds of the arguments of `search.find_near_zero`."""
 
 
 def dips_and_zeros(
@@ -36,7 +27,7 @@ def dips_and_zeros(
     """
     divided = ends.shape[2] > len(samples.ENDS)
     designs = laid_out(plan, inputs, {dim: ends.shape[1]}, samples.HALF if divided else HALF, samples.EVENLY)
-    run: Callable = compiled_near_zero() if designs.compiled else search.find_near_zero
+    run = designs.run(search.find_near_zero, KINDS)
     places, columns = 2 * (designs.half + samples.BEYOND) + 1, samples.MOST * designs.lanes
     events = np.full((samples.EVENT_ROWS, designs.designs, samples.MOST), np.nan)
     left = np.zeros(designs.designs)
@@ -48,6 +39,5 @@ def dips_and_zeros(
             np.zeros((ZERO_ROWS, columns)), np.zeros(designs.lanes), events, left,
         )  # fmt: skip
 
-    with np.errstate(all="ignore"):
-        over_threads(work, designs.blocks, 1 + designs.designs // DESIGNS_PER_THREAD, threads)
+    over_blocks(work, designs.blocks, designs.designs, threads)
     return events, left > 0.0

@@ -11,7 +11,7 @@ is `FAR_HALF`, so that places go on from one half turn to the other.
 All is plain Python that is translated to machine code.
 """
 
-from linksweep.engine.peaks.search import GRADES
+from linksweep.engine.peaks.samples import GRADES
 
 HALF, EVENLY = 40, 0.4
 """Samples on either side of the middle of a piece of a turn that is divided at near-toggles, and the share of them that

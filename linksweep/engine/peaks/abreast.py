@@ -12,35 +12,11 @@ instructions. A design has the same bits whichever others stand beside it, and w
 import math
 
 from linksweep.engine.kernel.instructions import call
-from linksweep.engine.peaks.brackets import (
-    BEST_ROWS,
-    BEYOND,
-    F1,
-    F2,
-    F3,
-    FAR,
-    NOISE,
-    PEAK,
-    PEAK_FAR,
-    PEAK_X,
-    RISE,
-    ROUNDS,
-    SIGNAL,
-    TAG,
-    X1,
-    X2,
-    X3,
-    advance,
-    insert_trials,
-    larger,
-    place_trials,
-)
+from linksweep.engine.peaks.brackets import BEYOND, EVALUATIONS, NOISE, PEAK, PEAK_FAR, PEAK_X, RISE, larger, refine
 from linksweep.engine.peaks.lanewise import around, copy_lanes, lanewise
-from linksweep.engine.peaks.search import GRADES, HALF, SAMPLES
+from linksweep.engine.peaks.samples import GRADES, HALF, SAMPLES
 from linksweep.engine.peaks.stragglers import open_brackets, slopes_between
 
-EVALUATIONS = BEST_ROWS
-"""Row of `best` after those of a refined bracket: the number of evaluations of a signal."""
 PEAK_ANGLE = PEAK_X
 """Row of `best` that has angles from the near-toggle [degree], in place of tangents, once a search of turns is done."""
 BLOCKS = 32
@@ -80,7 +56,7 @@ def search(
     """Write the peaks of blocks `first` … `last` of designs to `best`: a column for each design of each signal, one
     signal after the other, each filled up to whole blocks. A peak's place is its angle from the near-toggle."""
     columns = state.shape[1]
-    signals = columns // lanes
+    signals, samples = columns // lanes, (rows, x, HALF, lanes, columns)
     width = best.shape[1] // signals
     for signal in range(signals):
         for lane in range(lanes):
@@ -96,7 +72,7 @@ def search(
             call(sample, (own, x, rows))
             compare_samples(rows, SAMPLES, state, columns)
             for k in range(columns):
-                pick_sample(rows, x, HALF, lanes, columns, k, k % lanes, k, state)
+                pick_sample(samples, k, state, k)
             try_vertices(own, state, columns, lanes, -1, evaluate)
             for signal in range(signals):
                 column, tag = signal * lanes, signal * width + block * lanes
@@ -107,11 +83,9 @@ def search(
                         if count + 2 * HALF > brackets.shape[1]:
                             refine(brackets, count, lanes, width, start * lanes, constants, gathered, evaluate, best)
                             count = 0
-                        k, own_tag = column + lane, tag + lane
+                        k = column + lane
                         known = int(state[SUMMIT, k]) if smooth and state[CONFIRMED, k] > 0.0 else -1
-                        count = open_brackets(
-                            rows, x, HALF, lanes, columns, k, lane, known, False, signal, own_tag, brackets, count, best
-                        )
+                        count = open_brackets(samples, signal, lane, known, False, tag + lane, brackets, count, best)
         refine(brackets, count, lanes, width, start * lanes, constants, gathered, evaluate, best)
         for signal in range(signals):
             place_angles(best, signal * width + start * lanes, signal * width + stop * lanes)
@@ -221,9 +195,10 @@ def with_summit(height, number, summit, reach, other):
     return best.where(number, summit), best.where(height, reach), (other < less).where(less, other)
 
 
-def pick_sample(rows, x, half, lanes, columns, column, lane, k, state):
-    """Copy five samples about the best summit in a column, and the places of three; no peak is final near the ends of
-    a half turn, which has so many samples on either side of its middle."""
+def pick_sample(samples, column, state, k):
+    """Copy five of the samples in a column, those about the best summit, and the places of three; no peak is final near
+    the ends of a half turn."""
+    rows, x, half, lanes, columns = samples
     j = int(state[SUMMIT, k])
     far = 1 if j >= 2 * half else 0
     inside = 2 <= j - 2 * half * far < 2 * half - 2
@@ -232,7 +207,7 @@ def pick_sample(rows, x, half, lanes, columns, column, lane, k, state):
     for near in range(5):
         state[SAMPLED + near, k] = rows[(j + near - 2) * columns + column]
     for near in range(3):
-        state[PLACES + near, k] = x[(j + near + 2 * far) * lanes + lane]
+        state[PLACES + near, k] = x[(j + near + 2 * far) * lanes + column % lanes]
 
 
 @lanewise((*FIVE, *THREE), (VERTEX, CURVATURE, THIRD, Z_LEFT, X_LEFT, Z_RIGHT, X_RIGHT))
@@ -334,26 +309,3 @@ def place_angles(peak, tangent, far, trials):
     angle = math.degrees(2.0) * tangent.atan2(1.0) + 180.0 * far
     angle = (angle < 0.0).where(angle + 360.0, angle)
     return (-math.inf < peak).where(angle, math.nan), trials + SAMPLES
-
-
-def refine(brackets, count, lanes, width, start, constants, gathered, evaluate, best):
-    """Refine all brackets, several side by side, until none is left."""
-    for _ in range(ROUNDS):
-        if count == 0:
-            break
-        place_trials(brackets, count)
-        for front in range(0, count, lanes):
-            for lane in range(lanes):
-                tag = int(brackets[TAG, min(front + lane, count - 1)])
-                place = tag % width - start
-                own, its = constants[place // lanes], place % lanes
-                for row in range(len(gathered) // lanes):
-                    gathered[row * lanes + lane] = own[row * lanes + its]
-                if front + lane < count:
-                    best[EVALUATIONS, tag] += 3
-            end = front + lanes
-            call(evaluate, (gathered, brackets, X1, F1, FAR, SIGNAL, front, end))
-            call(evaluate, (gathered, brackets, X2, F2, FAR, SIGNAL, front, end))
-            call(evaluate, (gathered, brackets, X3, F3, FAR, SIGNAL, front, end))
-        insert_trials(brackets, count)
-        count = advance(brackets, count, best)

@@ -9,6 +9,7 @@ A bracket closes when its extended secants allow no further rise: a concave curv
 
 import math
 
+from linksweep.engine.kernel.instructions import call
 from linksweep.engine.peaks.lanewise import lanewise
 
 ROUNDS = 400
@@ -37,11 +38,36 @@ POINTS, TRIALS, VALUES = (XA, FA, XB, FB, XC, FC), (X1, X2, X3), (F1, F2, F3)
 # rows of `best`, for each signal: the peak, its place and half turn, and how much higher it might be
 PEAK, PEAK_X, PEAK_FAR, BEYOND = range(4)
 BEST_ROWS = 4
+EVALUATIONS = BEST_ROWS
+"""Row of `best` after those, of searches of designs side by side: the number of evaluations of a signal."""
 
 
 def in_blocks(count):
     """Return the number of columns of whole blocks that hold `count` brackets."""
     return (count + BLOCK - 1) // BLOCK * BLOCK
+
+
+def open_bracket(brackets, k, before, middle, after, far, signal, tag, floor):
+    """Write a bracket of three points, each with its value, to a column."""
+    brackets[XA, k], brackets[FA, k] = before
+    brackets[XB, k], brackets[FB, k] = middle
+    brackets[XC, k], brackets[FC, k] = after
+    brackets[FAR, k], brackets[SIGNAL, k], brackets[TAG, k], brackets[FLOOR, k] = far, signal, tag, floor
+    width = brackets[XC, k] - brackets[XA, k]
+    brackets[WIDTH, k], brackets[FIRST_WIDTH, k] = 4.0 * width, width  # 4.0: not counted as slow at first
+
+
+def evaluate_trials(brackets, first, last, constants, evaluate):
+    """Evaluate signals at the trials of brackets side by side."""
+    for x, f in ((X1, F1), (X2, F2), (X3, F3)):
+        call(evaluate, (constants, brackets, x, f, FAR, SIGNAL, first, last))
+
+
+def gather(constants, place, lanes, gathered, lane):
+    """Copy the constants of the design at a place, counted lane by lane and row by row, to a lane of others."""
+    row, own = place // lanes, place % lanes
+    for k in range(len(gathered) // lanes):
+        gathered[k * lanes + lane] = constants[row, k * lanes + own]
 
 
 @lanewise((*POINTS, WIDTH, FIRST_WIDTH), (*TRIALS, WIDTH))
@@ -121,3 +147,20 @@ def advance(brackets, count, best):
                     brackets[row, still_open] = brackets[row, k]
             still_open += 1
     return still_open
+
+
+def refine(brackets, count, lanes, width, start, constants, gathered, evaluate, best):
+    """Refine all brackets, several side by side, until none is left."""
+    for _ in range(ROUNDS):
+        if count == 0:
+            break
+        place_trials(brackets, count)
+        for front in range(0, count, lanes):
+            for lane in range(lanes):
+                tag = int(brackets[TAG, min(front + lane, count - 1)])
+                gather(constants, tag % width - start, lanes, gathered, lane)
+                if front + lane < count:
+                    best[EVALUATIONS, tag] += 3
+            evaluate_trials(brackets, front, front + lanes, gathered, evaluate)
+        insert_trials(brackets, count)
+        count = advance(brackets, count, best)

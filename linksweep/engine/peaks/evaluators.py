@@ -38,7 +38,7 @@ from linksweep.engine.kernel.instructions import Instructions
 from linksweep.engine.kernel.machine_code import INTEGER, INTEGERS, ROW, TABLE, MachineCode, machine_code
 from linksweep.engine.peaks.interpreted import Interpreted
 from linksweep.engine.peaks.lanewise import Values
-from linksweep.engine.peaks.search import HALF, PLACED
+from linksweep.engine.peaks.samples import HALF, PLACED
 from linksweep.engine.trace.graph import Node
 from linksweep.engine.trace.operators import interpret
 from linksweep.engine.trace.parity import parities

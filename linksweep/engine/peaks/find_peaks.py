@@ -3,47 +3,36 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Mapping
-from functools import cache, lru_cache
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 
 from linksweep.engine.blocks import block as new_block
-from linksweep.engine.kernel.machine_code import INTEGER, INTEGERS, ROW, TABLE, MachineCode
-from linksweep.engine.kernel.translate import translated
-from linksweep.engine.peaks import abreast, brackets, on_pieces, search, zeros
-from linksweep.engine.peaks.abreast import EVALUATIONS, PEAK_ANGLE
+from linksweep.engine.kernel.machine_code import INTEGER, INTEGERS, ROW, TABLE
+from linksweep.engine.peaks import abreast, on_pieces, zeros
+from linksweep.engine.peaks.abreast import PEAK_ANGLE
 from linksweep.engine.peaks.brackets import (
-    BEST_ROWS,
     BEYOND,
     BRACKET_ROWS,
-    F1,
+    EVALUATIONS,
     PEAK,
     PEAK_FAR,
     PEAK_X,
-    ROUNDS,
-    TAG,
-    TRIALS,
-    X1,
 )
 from linksweep.engine.peaks.evaluators import PIECE
-from linksweep.engine.peaks.laid_out import WIDTHS, LaidOut, laid_out
-from linksweep.engine.peaks.lanewise import Lanewise
-from linksweep.engine.run import Fields, Sizes, over_threads
+from linksweep.engine.peaks.laid_out import OF_DESIGNS, ON_PIECES, WIDTHS, LaidOut, laid_out, over_blocks
+from linksweep.engine.run import Fields, Sizes
 from linksweep.engine.trace.plan import Plan
 
 SIGNALS_AT_ONCE = 16
 """Signals searched together."""
-INTERPRETED_SAMPLES = 100_000
-"""Samples that a search along paths may evaluate interpreted."""
 PIECES_TOGETHER = 192
 """Pieces that are searched together, at least, in whole blocks of designs: their samples stay in the caches."""
-DESIGNS_PER_THREAD = 1000
-"""Designs that pay for another thread."""
-
-Values = Callable[[np.ndarray, np.ndarray], np.ndarray]
-"""A function of tags and places that returns the values of the tagged signals there."""
+OF_TURNS = (*[INTEGER] * 5, *OF_DESIGNS, TABLE, TABLE, ROW, TABLE)
+OF_PIECES = (*[INTEGER] * 4, INTEGERS, *ON_PIECES, TABLE, TABLE, ROW, TABLE, TABLE, ROW, TABLE, TABLE)
+OF_ZEROS = (*[INTEGER] * 4, INTEGERS, *ON_PIECES, TABLE, ROW, "f8[:, :, :]")
+"""Kinds of the arguments of `abreast.search`, `on_pieces.search` and `zeros.find_zeros`."""
 
 
 class Peaks(NamedTuple):
@@ -68,30 +57,6 @@ class PeaksOnPieces(NamedTuple):
     beyond: np.ndarray
     evaluations: np.ndarray
     piece: np.ndarray
-
-
-OF_DESIGNS = (INTEGERS, ROW, INTEGERS, TABLE, INTEGER, INTEGER, INTEGER, INTEGER, TABLE, ROW, ROW)
-"""Kinds of the arguments of a search that `laid_out` makes."""
-ON_PIECES = (*OF_DESIGNS[:-2], TABLE, TABLE)
-
-
-@cache
-def compiled_search() -> MachineCode:
-    """Return `abreast.search` as machine code."""
-    return translated(abreast.search, (*[INTEGER] * 5, *OF_DESIGNS, TABLE, TABLE, ROW, TABLE))
-
-
-@cache
-def compiled_search_on_pieces() -> MachineCode:
-    """Return `on_pieces.search` as machine code."""
-    tables = TABLE, TABLE, ROW, TABLE, TABLE, ROW, TABLE, TABLE
-    return translated(on_pieces.search, (*[INTEGER] * 4, INTEGERS, *ON_PIECES, *tables))
-
-
-@cache
-def compiled_zeros() -> MachineCode:
-    """Return `zeros.find_zeros` as machine code."""
-    return translated(zeros.find_zeros, (*[INTEGER] * 4, INTEGERS, *ON_PIECES, TABLE, ROW, "f8[:, :, :]"))
 
 
 def find_peaks(
@@ -124,9 +89,8 @@ def _requests(plan: Plan, signals: tuple[str, ...]) -> list[Plan]:
 def _peaks(plan: Plan, designs: LaidOut, smooth: bool, threads: int | None) -> Peaks:
     """Return the peaks of a plan's signals, which all have the same dims."""
     signals, lanes, blocks = designs.signals, designs.lanes, designs.blocks
-    run: Callable = compiled_search() if designs.compiled else abreast.search
-    columns = lanes * len(signals)
-    best = new_block(BEST_ROWS + 1, columns * blocks)  # a column for each design of each signal, in whole blocks
+    run, columns = designs.run(abreast.search, OF_TURNS), lanes * len(signals)
+    best = new_block(EVALUATIONS + 1, columns * blocks)  # a column for each design of each signal, in whole blocks
 
     def work(first: int, last: int) -> None:
         run(
@@ -134,8 +98,7 @@ def _peaks(plan: Plan, designs: LaidOut, smooth: bool, threads: int | None) -> P
             np.empty((abreast.STATE_ROWS, columns)), np.empty((BRACKET_ROWS, abreast.ROOM)), designs.gathered, best,
         )  # fmt: skip
 
-    with np.errstate(all="ignore"):
-        over_threads(work, blocks, 1 + designs.designs // DESIGNS_PER_THREAD, threads)
+    over_blocks(work, blocks, designs.designs, threads)
     stored = _of_designs(designs, best)
     return Peaks(signals, plan.loops, *(stored[row] for row in (PEAK, PEAK_ANGLE, BEYOND, EVALUATIONS)))
 
@@ -161,7 +124,7 @@ def find_peaks_on_pieces(
 
 def _best_on_pieces(pieces: LaidOut, counts: np.ndarray, threads: int | None) -> np.ndarray:
     """Return the results of a search on pieces (row, signal, design)."""
-    run: Callable = compiled_search_on_pieces() if pieces.compiled else on_pieces.search
+    run = pieces.run(on_pieces.search, OF_PIECES)
     lanes, signals, (blocks, together) = pieces.lanes, len(pieces.signals), _blocks_of_pieces(pieces, len(counts))
     most = together * pieces.shape[0] * signals * lanes
     best = np.empty((on_pieces.OF_PIECE + 1, signals * len(counts)))
@@ -174,8 +137,7 @@ def _best_on_pieces(pieces: LaidOut, counts: np.ndarray, threads: int | None) ->
             np.zeros((BRACKET_ROWS, abreast.ROOM)), pieces.gathered, np.zeros((on_pieces.OF_PIECE, most)), best,
         )  # fmt: skip
 
-    with np.errstate(all="ignore"):
-        over_threads(work, blocks, 1 + len(counts) // DESIGNS_PER_THREAD, threads)
+    over_blocks(work, blocks, len(counts), threads)
     return best.reshape(len(best), signals, len(counts))
 
 
@@ -198,7 +160,7 @@ def zeros_of_pieces(
     1 for the half turn about the start or the end. The other arguments are as in `find_peaks_on_pieces`."""
     counts = counts.astype(np.int64)
     pieces = laid_out(plan, inputs, {dim: len(counts), PIECE: int(counts.max())}, half)
-    run: Callable = compiled_zeros() if pieces.compiled else zeros.find_zeros
+    run = pieces.run(zeros.find_zeros, OF_ZEROS)
     blocks, together = _blocks_of_pieces(pieces, len(counts))
     most, room = pieces.shape[0], zeros.MOST_ZEROS * together * pieces.shape[0] * pieces.lanes
     places = np.full((2, len(counts) * most, zeros.MOST_ZEROS), np.nan)
@@ -209,35 +171,5 @@ def zeros_of_pieces(
             np.zeros((zeros.ZERO_ROWS, room)), pieces.gathered, places,
         )  # fmt: skip
 
-    with np.errstate(all="ignore"):
-        over_threads(work, blocks, 1 + len(counts) // DESIGNS_PER_THREAD, threads)
+    over_blocks(work, blocks, len(counts), threads)
     return places.reshape(2, len(counts), most, zeros.MOST_ZEROS)
-
-
-def search_functions(samples: int) -> Mapping[str, Callable]:
-    """Return the functions of a search along paths, compiled where there are many samples to search."""
-    return _compiled_for_paths() if samples > INTERPRETED_SAMPLES else {**vars(search), **vars(brackets)}
-
-
-@cache
-def _compiled_for_paths() -> Mapping[str, Callable]:
-    vectors = {name: value.compiled() for name, value in vars(brackets).items() if isinstance(value, Lanewise)}
-    paths = ("f8[:, :, :]", TABLE, TABLE, TABLE, INTEGER, TABLE, TABLE, INTEGERS)
-    return vectors | {
-        "open_on_paths": translated(search.open_on_paths, paths),
-        "advance": translated(brackets.advance, (TABLE, INTEGER, TABLE)),
-    }
-
-
-def refine(functions: Mapping[str, Callable], table: np.ndarray, count: int, best: np.ndarray, values: Values) -> None:
-    """Refine brackets, the first `count` of a table, until none is left; `best` takes the peaks of their tags."""
-    for _ in range(ROUNDS):
-        if not count:
-            return
-        functions["place_trials"](table, count)
-        tag = np.tile(table[TAG, :count].astype(int), len(TRIALS))
-        table[F1 : F1 + len(TRIALS), :count] = values(tag, table[X1 : X1 + len(TRIALS), :count].ravel()).reshape(
-            -1, count
-        )
-        functions["insert_trials"](table, count)
-        count = functions["advance"](table, count, best)

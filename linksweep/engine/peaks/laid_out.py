@@ -3,23 +3,32 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cache, lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from linksweep.engine.kernel.machine_code import INTEGER, INTEGERS, ROW, TABLE
+from linksweep.engine.kernel.translate import translated
 from linksweep.engine.patience import Patience
-from linksweep.engine.peaks import abreast, search
+from linksweep.engine.peaks import abreast
 from linksweep.engine.peaks.evaluators import FAR_WIDTH, NEAR_WIDTH, Evaluators, Functions
-from linksweep.engine.run import Fields, Sizes, flat, ordered
+from linksweep.engine.peaks.samples import EVENLY, HALF, grades
+from linksweep.engine.run import Fields, Sizes, flat, ordered, over_threads
 from linksweep.engine.trace.plan import Plan
 
 WIDTHS = (NEAR_WIDTH, FAR_WIDTH)
 INTERPRETED_DESIGNS = 40
 """Designs interpreted before a plan's kernel is compiled."""
-NEWTON_STEPS = 12
-"""Newton steps to the places of samples, from above on a convex curve: the last ones change rounding alone."""
+DESIGNS_PER_THREAD = 1000
+"""Designs that pay for another thread."""
+OF_DESIGNS = (INTEGERS, ROW, INTEGERS, TABLE, *[INTEGER] * 4, TABLE, ROW, ROW)
+ON_PIECES = (*OF_DESIGNS[:-2], TABLE, TABLE)
+"""Kinds of the arguments that `LaidOut.arguments` makes, and `LaidOut.arguments_of_pieces`."""
+compiled = cache(translated)
+"""Return a search of these kinds of arguments as machine code."""
 
 
 @dataclass(eq=False)
@@ -51,7 +60,7 @@ class LaidOut(NamedTuple):
     """All parameters, and where each starts."""
     half: int
     """Samples on either side of the middle of each half turn."""
-    evenly: float = search.EVENLY
+    evenly: float = EVENLY
     """Share of the samples that are spread evenly."""
 
     @property
@@ -66,9 +75,9 @@ class LaidOut(NamedTuple):
     def blocks(self) -> int:
         return -(-self.designs // self.lanes)
 
-    @property
-    def compiled(self) -> bool:
-        return self.lanes > 1
+    def run(self, search: Callable, kinds: tuple[str, ...]) -> Callable:
+        """Return a search of arguments of these kinds: interpreted, or compiled as the functions are."""
+        return compiled(search, kinds) if self.lanes > 1 else search
 
     def arguments(self, first: int, last: int, places: int | None = None) -> tuple[Any, ...]:
         """Return the arguments that searches of blocks `first` … `last` have in common, with new arrays to work in: for
@@ -99,9 +108,7 @@ class LaidOut(NamedTuple):
         return np.zeros(self.functions.constants * self.lanes)
 
 
-def laid_out(
-    plan: Plan, inputs: Fields, sizes: Sizes, half: int = search.HALF, evenly: float = search.EVENLY
-) -> LaidOut:
+def laid_out(plan: Plan, inputs: Fields, sizes: Sizes, half: int = HALF, evenly: float = EVENLY) -> LaidOut:
     """Return the designs of a plan, whose outputs are signals, all with the same dims, and widths of near-toggles."""
     signals = tuple(name for name in plan.outputs if name not in WIDTHS)
     ready = searcher(plan, signals)
@@ -111,20 +118,7 @@ def laid_out(
     return LaidOut(signals, functions, shape, (parameters, parameter_at[:-1]), half, evenly)
 
 
-@lru_cache(maxsize=4)
-def grades(half: int = search.HALF, evenly: float = search.EVENLY) -> np.ndarray:
-    """Return the half-angle tangents x of the samples of half a turn from its middle on, for each scale s of the grade;
-    both ends are 1.
-
-    Most samples are spread evenly over asinh(x/s), a share `evenly` over x: else those far from a narrow near-toggle
-    would be up to 40 degrees apart.
-    """
-    scale = 0.5 ** np.arange(search.GRADES)[:, None]
-    part, end = np.arange(half + 1) / half, np.arcsinh(1.0 / scale)
-    y = np.minimum(part / (1.0 - evenly), 1.0) * end
-    for _ in range(NEWTON_STEPS):
-        error = (1.0 - evenly) * y / end + evenly * scale * np.sinh(y) - part
-        y -= error / ((1.0 - evenly) / end + evenly * scale * np.cosh(y))
-    table = scale * np.sinh(y)
-    table[:, -1] = 1.0
-    return table
+def over_blocks(work: Callable[[int, int], None], blocks: int, designs: int, threads: int | None) -> None:
+    """Run work(first, last) over blocks of so many designs."""
+    with np.errstate(all="ignore"):
+        over_threads(work, blocks, 1 + designs // DESIGNS_PER_THREAD, threads)

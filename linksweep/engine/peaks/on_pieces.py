@@ -13,7 +13,6 @@ import math
 from linksweep.engine.kernel.instructions import call
 from linksweep.engine.peaks.abreast import (
     CONFIRMED,
-    EVALUATIONS,
     FINAL,
     NUMBER,
     OTHER,
@@ -23,11 +22,10 @@ from linksweep.engine.peaks.abreast import (
     comparison_of_half,
     pick_sample,
     place_samples,
-    refine,
     try_vertices,
 )
-from linksweep.engine.peaks.brackets import BEYOND, PEAK
-from linksweep.engine.peaks.search import FEW, HALF
+from linksweep.engine.peaks.brackets import BEYOND, EVALUATIONS, PEAK, gather, refine
+from linksweep.engine.peaks.samples import FEW, HALF
 from linksweep.engine.peaks.stragglers import open_brackets
 
 OF_PIECE = EVALUATIONS + 1
@@ -54,6 +52,8 @@ def search(
     `constants` and of other tables for each, and in `tops` a column for each piece of each signal.
     """
     designs, pieces, columns, half = len(counts), len(constants) // together, state.shape[1], grades.shape[1] - 1
+    of_designs, tables = (sizes, parameters, parameter_at), (constants, x, rows)
+    sampling = grades, prepare, enter, sample
     for start in range(first, last, together):
         stop, count = min(start + together, last), 0
         for k in range(len(highest)):
@@ -62,17 +62,14 @@ def search(
             front = block * lanes
             for piece in range(most_pieces(counts, front, lanes)):
                 row = (block - start) * pieces + piece
-                sample_piece(
-                    front, piece, designs, lanes, sizes, parameters, parameter_at, grades, prepare, enter, sample,
-                    constants, x, rows, row,
-                )  # fmt: skip
+                sample_piece(front, piece, designs, lanes, of_designs, sampling, tables, row)
                 compare(rows[row], columns, half, state)
                 for lane in range(min(lanes, designs - front)):
                     if piece < counts[front + lane]:
                         place, own = row * lanes + lane, (block - start) * lanes + lane
                         count = note_summits(rows[row], state, lanes, place, half, own, highest, summits, count, tops)
         count = drop_lower(summits, count, highest)
-        confirm(count, lanes, half, evaluate, constants, x, rows, columns, trials, summits, brackets, gathered, tops)
+        confirm(summits, count, lanes, half, tables, evaluate, trials, brackets, gathered, tops)
         for design in range(start * lanes, min(stop * lanes, designs)):
             place = (design // lanes - start) * pieces * lanes + design % lanes
             keep_highest(tops, place, lanes, counts[design], best, design, designs)
@@ -86,16 +83,14 @@ def most_pieces(counts, front, lanes):
     return most
 
 
-def sample_piece(
-    front, piece, designs, lanes, sizes, parameters, parameter_at, grades, prepare, enter, sample, constants, x, rows,
-    row
-):  # fmt: skip
-    """Sample a piece of designs side by side, into a row of these tables that follows those of their earlier pieces."""
+def sample_piece(front, piece, designs, lanes, of_designs, sampling, tables, row):
+    """Sample a piece of designs side by side, into a row of tables that follows those of their earlier pieces."""
+    (grades, prepare, enter, sample), (constants, x, rows) = sampling, tables
     if piece == 0:
-        call(prepare, (front, designs, sizes, parameters, parameter_at, constants[row]))
+        call(prepare, (front, designs, *of_designs, constants[row]))
     for k in range(constants.shape[1] if piece > 0 else 0):
         constants[row, k] = constants[row - piece, k]
-    call(enter, (front, piece, sizes, parameters, parameter_at, constants[row]))
+    call(enter, (front, piece, *of_designs, constants[row]))
     place_samples(constants[row], lanes, grades, x[row])
     call(sample, (constants[row], x[row], rows[row]))
 
@@ -147,22 +142,23 @@ def drop_lower(summits, count, highest):
     return kept
 
 
-def confirm(count, lanes, half, evaluate, constants, x, rows, columns, trials, summits, brackets, gathered, tops):
+def confirm(summits, count, lanes, half, tables, evaluate, trials, brackets, gathered, tops):
     """Write the peaks about summits: those that trials confirm, or else those of brackets."""
+    constants, x, rows = tables
     width, opened = len(constants) * lanes, 0
+    columns = tops.shape[1] // width * lanes
     for front in range(0, count, lanes):
         for lane in range(lanes):
             k = min(front + lane, count - 1)
-            row, its = int(summits[PLACE, k]) // lanes, int(summits[PLACE, k]) % lanes
-            signal = int(summits[SIGNAL, k])
-            for number in range(len(gathered) // lanes):
-                gathered[number * lanes + lane] = constants[row, number * lanes + its]
+            place, signal = int(summits[PLACE, k]), int(summits[SIGNAL, k])
+            gather(constants, place, lanes, gathered, lane)
             trials[SUMMIT, lane], trials[OTHER, lane], trials[NUMBER, lane] = summits[AT, k], summits[NEXT, k], signal
-            pick_sample(rows[row], x[row], half, lanes, columns, signal * lanes + its, its, lane, trials)
+            samples = rows[place // lanes], x[place // lanes], half, lanes, columns
+            pick_sample(samples, signal * lanes + place % lanes, trials, lane)
         try_vertices(gathered, trials, lanes, lanes, NUMBER, evaluate)
         for lane in range(min(lanes, count - front)):
             place, signal = int(summits[PLACE, front + lane]), int(summits[SIGNAL, front + lane])
-            row, its, tag = place // lanes, place % lanes, signal * width + place
+            tag = signal * width + place
             for number in range(len(tops)):
                 tops[number, tag] = trials[number, lane]
             tops[EVALUATIONS, tag] += 4 * half
@@ -171,10 +167,8 @@ def confirm(count, lanes, half, evaluate, constants, x, rows, columns, trials, s
                     refine(brackets, opened, lanes, width, 0, constants, gathered, evaluate, tops)
                     opened = 0
                 known = int(trials[SUMMIT, lane]) if trials[CONFIRMED, lane] > 0.0 else -1
-                opened = open_brackets(
-                    rows[row], x[row], half, lanes, columns, signal * lanes + its, its, known, True, signal, tag,
-                    brackets, opened, tops,
-                )  # fmt: skip
+                samples = rows[place // lanes], x[place // lanes], half, lanes, columns
+                opened = open_brackets(samples, signal, place % lanes, known, True, tag, brackets, opened, tops)
     refine(brackets, opened, lanes, width, 0, constants, gathered, evaluate, tops)
 
 

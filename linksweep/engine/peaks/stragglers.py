@@ -5,42 +5,28 @@ All is plain Python that is translated to machine code.
 
 import math
 
-from linksweep.engine.peaks.brackets import (
-    BEYOND,
-    FA,
-    FAR,
-    FB,
-    FC,
-    FIRST_WIDTH,
-    FLOOR,
-    PEAK,
-    PEAK_FAR,
-    PEAK_X,
-    RISE,
-    SIGNAL,
-    TAG,
-    WIDTH,
-    XA,
-    XB,
-    XC,
-)
-from linksweep.engine.peaks.search import might_reach, noise
+from linksweep.engine.peaks.brackets import BEYOND, NOISE, PEAK, PEAK_FAR, PEAK_X, RISE, open_bracket
 
 
-def open_brackets(rows, x, half, lanes, columns, k, lane, known, even, signal, tag, brackets, count, best):
+def open_brackets(samples, signal, lane, known, even, tag, brackets, count, best):
     """Open brackets about all summits of a signal that may exceed its peak so far, that of the `known` summit, or else
-    its highest sample (−1: none is known); return their number. `even` signals are the same on both halves."""
-    samples, confirmed = 4 * half, known >= 0
+    its highest sample (−1: none is known); return their number. `even` signals are the same on both halves.
+
+    Samples are a row for each place, the places, the samples on either side of the middle of each half turn, and the
+    numbers of lanes and of columns, those of all signals.
+    """
+    (_rows, x, half, lanes, _columns), confirmed = samples, known >= 0
+    column = signal * lanes + lane
     if not confirmed:
-        note_highest(rows, x, half, lanes, columns, k, lane, tag, best)
+        note_highest(samples, column, tag, best)
     top = best[PEAK, tag]
     if not abs(top) < math.inf:
         return count
-    first, last = (half, 3 * half) if even else (0, samples - 1)
-    before = sample_of(rows, first - 2, samples, columns, k)
-    left, value = sample_of(rows, first - 1, samples, columns, k), sample_of(rows, first, samples, columns, k)
+    first, last = (half, 3 * half) if even else (0, 4 * half - 1)
+    before = sample_of(samples, first - 2, column)
+    left, value = sample_of(samples, first - 1, column), sample_of(samples, first, column)
     for j in range(first, last + 1):
-        right = sample_of(rows, j + 1, samples, columns, k)
+        right = sample_of(samples, j + 1, column)
         stands = left < value and value >= right
         if j != known and (even or stands):
             floor = noise(left, value, right)
@@ -50,31 +36,37 @@ def open_brackets(rows, x, half, lanes, columns, k, lane, known, even, signal, t
             if summit or between:
                 far = j // (2 * half)
                 at = (j + 2 * far) * lanes + lane
-                brackets[XA, count], brackets[XB, count], brackets[XC, count] = x[at], x[at + lanes], x[at + 2 * lanes]
-                brackets[FA, count], brackets[FB, count], brackets[FC, count] = left, value, right
+                start, middle, end = (x[at], left), (x[at + lanes], value), (x[at + 2 * lanes], right)
                 if between:
-                    brackets[XB, count], brackets[FB, count] = 0.5 * (x[at] + x[at + lanes]), -math.inf
-                    brackets[XC, count], brackets[FC, count] = x[at + lanes], value
-                brackets[FAR, count], brackets[SIGNAL, count] = float(far), float(signal)
-                brackets[TAG, count], brackets[FLOOR, count] = tag, floor
-                width = brackets[XC, count] - brackets[XA, count]
-                brackets[WIDTH, count], brackets[FIRST_WIDTH, count] = 4.0 * width, width  # 4.0: not counted as slow
+                    middle, end = (0.5 * (x[at] + x[at + lanes]), -math.inf), middle
+                open_bracket(brackets, count, start, middle, end, far, signal, tag, floor)
                 count += 1
         before, left, value = left, value, right
     return count
 
 
-def note_highest(rows, x, half, lanes, columns, k, lane, tag, best):
+def note_highest(samples, column, tag, best):
     """Write the highest sample of a signal as its peak so far."""
-    samples = 4 * half
+    rows, x, half, lanes, columns = samples
     top, at = -math.inf, 0
-    for j in range(samples):
-        if rows[j * columns + k] > top:
-            top, at = rows[j * columns + k], j
-    floor = noise(sample_of(rows, at - 1, samples, columns, k), top, sample_of(rows, at + 1, samples, columns, k))
+    for j in range(4 * half):
+        if rows[j * columns + column] > top:
+            top, at = rows[j * columns + column], j
+    floor = noise(sample_of(samples, at - 1, column), top, sample_of(samples, at + 1, column))
     best[PEAK, tag], best[BEYOND, tag] = top if top > -math.inf else math.nan, 10.0 * floor
     far = at // (2 * half)
-    best[PEAK_X, tag], best[PEAK_FAR, tag] = x[(at + 1 + 2 * far) * lanes + lane], float(far)
+    best[PEAK_X, tag], best[PEAK_FAR, tag] = x[(at + 1 + 2 * far) * lanes + column % lanes], far
+
+
+def might_reach(left, value, right, ratio):
+    """Return an upper estimate of the peak about a sample above its neighbours: add the rises that both extended
+    secants allow. The right neighbour is `ratio` times as far away as the left one."""
+    return value + ((value - left) * ratio + (value - right) / ratio)
+
+
+def noise(left, value, right):
+    """Return the rounding noise of a signal about a sample, by its size there: elsewhere it may tend to −∞."""
+    return NOISE * max(abs(left) if left > -math.inf else 0.0, abs(value), abs(right) if right > -math.inf else 0.0)
 
 
 def might_reach_between(before, left, value, right):
@@ -92,8 +84,9 @@ def slopes_between(before, left, value, right):
     return at_left, (before + 2.0 * right + 3.0 * value - 6.0 * left) / 6.0
 
 
-def sample_of(rows, j, samples, columns, k):
+def sample_of(samples, j, column):
     """Return a sample of one signal and lane, around the turn; −inf where there is no value."""
-    around = samples if j < 0 else -samples if j >= samples else 0
-    value = rows[(j + around) * columns + k]
+    rows, _x, half, _lanes, columns = samples
+    around = 4 * half if j < 0 else -4 * half if j >= 4 * half else 0
+    value = rows[(j + around) * columns + column]
     return value if value == value else -math.inf

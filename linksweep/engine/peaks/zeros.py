@@ -10,6 +10,7 @@ Source: Dowell and Jarratt, A modified regula falsi method, BIT 11 (1971).
 """
 
 from linksweep.engine.kernel.instructions import call
+from linksweep.engine.peaks.brackets import gather
 from linksweep.engine.peaks.on_pieces import most_pieces, sample_piece
 
 MOST_ZEROS = 12
@@ -32,22 +33,19 @@ def find_zeros(
 ):  # fmt: skip
     """Write the zeros of the pieces of designs in blocks `first` … `last`, so many `together`, to `zeros` (number,
     piece of all, nth): tangents, half turns. `counts` are the numbers of the designs' pieces."""
-    designs, pieces = len(counts), len(constants) // together
+    designs, pieces, half = len(counts), len(constants) // together, grades.shape[1] - 1
+    of_designs, tables = (sizes, parameters, parameter_at), (constants, x, rows)
+    sampling = grades, prepare, enter, sample
     for start in range(first, last, together):
         count = 0
         for block in range(start, min(start + together, last)):
             front = block * lanes
             for piece in range(most_pieces(counts, front, lanes)):
                 row = (block - start) * pieces + piece
-                sample_piece(
-                    front, piece, designs, lanes, sizes, parameters, parameter_at, grades, prepare, enter, sample,
-                    constants, x, rows, row,
-                )  # fmt: skip
+                sample_piece(front, piece, designs, lanes, of_designs, sampling, tables, row)
                 for lane in range(min(lanes, designs - front)):
                     if piece < counts[front + lane]:
-                        count = open_zeros(
-                            rows[row], x[row], grades.shape[1] - 1, lanes, row * lanes + lane, zeros_at, count
-                        )
+                        count = open_zeros(rows[row], x[row], half, lanes, row * lanes + lane, zeros_at, count)
         evaluate_trials(zeros_at, count, lanes, constants, gathered, evaluate)
         keep_vertices(zeros_at, count)
         count = drop_closed(zeros_at, count, start, lanes, pieces, zeros)
@@ -71,7 +69,8 @@ def open_zeros(rows, x, half, lanes, owner, zeros_at, count):
         at = (j + 1 + 2 * far) * lanes + lane
         here, ahead = rows[j * lanes + lane], rows[(j + 1) * lanes + lane]
         if here == 0.0 or here * ahead < 0.0:
-            count = open_zero(zeros_at, count, x[at], here, x[at + lanes], ahead, x[at], far, owner, OPEN)
+            bracket = x[at], here, x[at + lanes], ahead
+            count = open_zero(zeros_at, count, bracket, x[at], far, 0, owner, OPEN)
         before = rows[(j - 1) * lanes + lane]
         if before * here > 0.0 and here * ahead > 0.0 and abs(here) < abs(before) and abs(here) < abs(ahead):
             step = 0.5 * (before - ahead) / (before + ahead - 2.0 * here)
@@ -80,19 +79,18 @@ def open_zeros(rows, x, half, lanes, owner, zeros_at, count):
                 for side in (-1, 1):
                     end = at + side * lanes
                     value = before if side < 0 else ahead
-                    count = open_zero(zeros_at, count, vertex, here, x[end], value, vertex, far, owner, UNKNOWN)
+                    count = open_zero(zeros_at, count, (vertex, here, x[end], value), vertex, far, 0, owner, UNKNOWN)
     return count
 
 
-def open_zero(zeros_at, count, start, at_start, stop, at_stop, trial, half, owner, holds):
-    """Note a bracket in the next column, if there is room; return how many there are."""
-    if count == zeros_at.shape[1]:
-        return count
-    zeros_at[START, count], zeros_at[AT_START, count] = start, at_start
-    zeros_at[STOP, count], zeros_at[AT_STOP, count] = stop, at_stop
-    zeros_at[TRIAL, count], zeros_at[SIDE, count] = trial, float(half)
-    zeros_at[SIGNAL_NUMBER, count], zeros_at[OWNER, count], zeros_at[HOLDS, count] = 0.0, float(owner), float(holds)
-    return count + 1
+def open_zero(zeros_at, k, bracket, trial, half, signal, owner, holds):
+    """Note a bracket, two ends with their values, in column k, if there is room; return the number of the next one."""
+    if k == zeros_at.shape[1]:
+        return k
+    zeros_at[START, k], zeros_at[AT_START, k], zeros_at[STOP, k], zeros_at[AT_STOP, k] = bracket
+    zeros_at[TRIAL, k], zeros_at[SIDE, k], zeros_at[SIGNAL_NUMBER, k] = trial, half, signal
+    zeros_at[OWNER, k], zeros_at[HOLDS, k] = owner, holds
+    return k + 1
 
 
 def evaluate_trials(zeros_at, count, lanes, constants, gathered, evaluate):
@@ -100,9 +98,7 @@ def evaluate_trials(zeros_at, count, lanes, constants, gathered, evaluate):
     for front in range(0, count, lanes):
         for lane in range(lanes):
             owner = int(zeros_at[OWNER, min(front + lane, count - 1)])
-            own, its = constants[owner // lanes], owner % lanes
-            for row in range(len(gathered) // lanes):
-                gathered[row * lanes + lane] = own[row * lanes + its]
+            gather(constants, owner, lanes, gathered, lane)
         call(evaluate, (gathered, zeros_at, TRIAL, AT_TRIAL, SIDE, SIGNAL_NUMBER, front, front + lanes))
 
 

@@ -1,4 +1,4 @@
-"""Search for peaks along paths, with the functions of the fused search: `linksweep.engine.peaks.search`.
+"""Search for peaks along paths, with brackets as in the fused search: `linksweep.engine.peaks.paths`.
 
 Signals are evaluated at the samples of each path; lanes about their summits are refined until none can exceed the
 current peak. Limits at the ends of arcs are extrapolated; poles are known by their angles.
@@ -12,8 +12,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from linksweep.engine.peaks import brackets, search
-from linksweep.engine.peaks.find_peaks import refine, search_functions
+from linksweep.engine.peaks import brackets
+from linksweep.engine.peaks.paths import open_brackets, refine
+from linksweep.engine.peaks.stragglers import might_reach
 from linksweep.engine.run import Field
 from linksweep.results.peak_search.groups import Group
 from linksweep.results.peak_search.paths import QUARTER, Part, Paths
@@ -148,7 +149,6 @@ def _search(group: Group, signals: tuple[str, ...], paths: Paths, current: Array
     count_of_paths, per_path = paths.x.shape
     samples = np.full(count_of_paths, per_path)
     lanes, count, best = _opened(group, signals, paths, threads)
-    run = search_functions(paths.x.size * len(signals))
 
     def values_at(tag: Array, x: Array) -> Array:
         path = tag // len(signals)
@@ -159,7 +159,7 @@ def _search(group: Group, signals: tuple[str, ...], paths: Paths, current: Array
     with np.errstate(all="ignore"):
         best[brackets.PEAK] = np.fmax(best[brackets.PEAK], current.ravel())
         count = _keep_promising(lanes, count, best[brackets.PEAK], paths, len(signals))
-        refine(run, lanes, count, best, values_at)
+        refine(paths.x.size * len(signals), lanes, count, best, values_at)
     value, x, bound = (best[row].reshape(-1, len(signals)) for row in (brackets.PEAK, brackets.PEAK_X, brackets.BEYOND))
     angle = angle_in_period(paths.angles(np.arange(count_of_paths)[:, None], x), group.scene.period)
     return value, angle, bound, np.broadcast_to(samples[:, None], value.shape)
@@ -186,7 +186,7 @@ def rises(group: Group, signal: str, paths: Paths, level: Array, threads: int | 
         return group.values((signal,), paths.row[path[tag]], paths.angles(path[tag], x), threads)[0]
 
     with np.errstate(all="ignore"):
-        refine(search_functions(paths.x.size), lanes, count, best, values_at)
+        refine(paths.x.size, lanes, count, best, values_at)
     angle = angle_in_period(paths.angles(path, best[brackets.PEAK_X]), group.scene.period)
     return Rises(path, angle, best[brackets.PEAK])
 
@@ -196,13 +196,11 @@ def _opened(group: Group, signals: tuple[str, ...], paths: Paths, threads: int |
     count_of_paths, per_path = paths.x.shape
     every = np.repeat(np.arange(count_of_paths), per_path)
     values = group.values(signals, paths.row[every], paths.angles(every, paths.x.ravel()), threads)
-    rows = np.ascontiguousarray(values.reshape(len(signals), count_of_paths, per_path).swapaxes(0, 1))
+    rows = values.reshape(len(signals), count_of_paths, per_path).swapaxes(0, 1)
     lanes = np.zeros((brackets.BRACKET_ROWS, brackets.in_blocks(rows.size // 2 + 1)))
     best = np.empty((brackets.BEST_ROWS, count_of_paths * len(signals)))
-    where, flags = map(np.ascontiguousarray, (paths.x, paths.before, paths.after)), brackets.in_blocks(per_path)
     with np.errstate(all="ignore"):
-        run = search_functions(rows.size)["open_on_paths"]
-        count = run(rows, *where, paths.ends == "meet", lanes, best, np.zeros(flags, dtype=np.int64))
+        count = open_brackets(rows, paths.x, paths.before, paths.after, paths.ends == "meet", lanes, best)
     return lanes, count, best
 
 
@@ -221,7 +219,7 @@ def _promising(lanes: Array, peak: Array, paths: Paths, signals: int) -> Array:
     """
     tag, x = lanes[brackets.TAG].astype(int), lanes[brackets.XB]
     ratio = (lanes[brackets.XC] - x) / (x - lanes[brackets.XA])
-    promise = search.might_reach(lanes[brackets.FA], lanes[brackets.FB], lanes[brackets.FC], ratio) > peak[tag]
+    promise = might_reach(lanes[brackets.FA], lanes[brackets.FB], lanes[brackets.FC], ratio) > peak[tag]
     path = tag // signals
     known = (lanes[brackets.FA] > -np.inf) & (lanes[brackets.FC] > -np.inf)
     return promise & ((paths.ends != "pass") | known & (x > paths.x[path, 0]) & (x < paths.x[path, -1]))

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from linksweep.engine.peaks import brackets as search
-from linksweep.engine.peaks.find_peaks import refine, search_functions
+from linksweep.engine.peaks.paths import refine
 from linksweep.engine.quantity import Limit
 from linksweep.engine.roots import roots
 from linksweep.scene.pairs import Array, quantities_at
@@ -141,7 +141,7 @@ def _refined(curves: Curves, brackets: Extremes) -> Extremes:
         return -brackets.sign[tag] * curves.at(brackets.curve[tag], x)[0]
 
     with np.errstate(all="ignore"):
-        refine(search_functions(curves.x.size), lanes, count, best, heights)
+        refine(curves.x.size, lanes, count, best, heights)
     value, noise = curves.at(brackets.curve, best[search.PEAK_X])
     x, values = (
         np.stack([before, best[search.PEAK_X], after]),

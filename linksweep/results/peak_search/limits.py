@@ -18,8 +18,7 @@ from typing import NamedTuple, TypeVar
 
 import numpy as np
 
-from linksweep.engine.peaks.laid_out import grades
-from linksweep.engine.peaks.search import GRADES
+from linksweep.engine.peaks.samples import GRADES, grades
 from linksweep.engine.quantity import Limit
 from linksweep.engine.run import Field
 from linksweep.engine.trace.plan import plan

@@ -17,7 +17,7 @@ import numpy as np
 
 from linksweep.engine.peaks.evaluators import ALONG, END, FAR, FAR_WIDTH, NEAR_WIDTH, PIECE, TANGENT
 from linksweep.engine.peaks.find_peaks import find_peaks_on_pieces, zeros_of_pieces
-from linksweep.engine.peaks.search import FEW, HALF
+from linksweep.engine.peaks.samples import FEW, HALF
 from linksweep.engine.quantity import Row, Table
 from linksweep.engine.run import Field, Fields, evaluate
 from linksweep.engine.trace.plan import Plan, plan

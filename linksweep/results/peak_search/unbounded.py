@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from linksweep.engine.peaks.search import HALF
+from linksweep.engine.peaks.samples import HALF
 from linksweep.results.peak_search.along_paths import SignalPeak, angle_in_period, put, raise_to
 from linksweep.results.peak_search.arcs import NEAREST, arc_ends
 from linksweep.results.peak_search.groups import Group, groups

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from linksweep.engine.near_zero import dips, samples, search
-from linksweep.engine.peaks.laid_out import grades
+from linksweep.engine.peaks.samples import grades
 from linksweep.engine.peaks.zeros import ZERO_ROWS
 
 BORDER = 2.0 * np.arctan(samples.BORDER)

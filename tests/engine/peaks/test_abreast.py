@@ -10,9 +10,8 @@ import linksweep as ls
 from linksweep.engine.peaks import abreast, on_pieces
 from linksweep.engine.peaks.brackets import BEST_ROWS, BRACKET_ROWS, PEAK
 from linksweep.engine.peaks.evaluators import Evaluators
-from linksweep.engine.peaks.laid_out import grades
 from linksweep.engine.peaks.lanewise import Around, Lanewise
-from linksweep.engine.peaks.search import HALF, SAMPLES
+from linksweep.engine.peaks.samples import HALF, SAMPLES, grades
 from linksweep.engine.peaks.stragglers import might_reach_between
 from linksweep.engine.trace.plan import plan
 

@@ -12,7 +12,7 @@ from linksweep.engine.peaks import laid_out, on_pieces, zeros
 from linksweep.engine.peaks.abreast import EVALUATIONS, ROOM, STATE_ROWS
 from linksweep.engine.peaks.brackets import BRACKET_ROWS, PEAK, PEAK_X
 from linksweep.engine.peaks.evaluators import Functions
-from linksweep.engine.peaks.search import HALF, SAMPLES
+from linksweep.engine.peaks.samples import HALF, SAMPLES, grades
 from linksweep.physics.closures.crank_angle import place_on_piece
 from linksweep.results.peak_search import pieces
 from linksweep.results.peak_search.groups import groups
@@ -126,7 +126,7 @@ def zeros_of(height) -> np.ndarray:
     one, places = np.zeros(1, dtype=np.int64), np.full((2, 1, zeros.MOST_ZEROS), np.nan)
     with np.errstate(all="ignore"):
         zeros.find_zeros(
-            0, 1, 1, 1, one + 1, one + 1, np.zeros(1), one, laid_out.grades(), prepare, enter, sample, evaluate,
+            0, 1, 1, 1, one + 1, one + 1, np.zeros(1), one, grades(), prepare, enter, sample, evaluate,
             np.zeros((1, 2)), np.zeros((1, 4 * HALF + 4)), np.zeros((1, SAMPLES + 1)),
             np.zeros((zeros.ZERO_ROWS, 99)), np.zeros(2), places,
         )  # fmt: skip

@@ -1,0 +1,140 @@
+"""Search for peaks along paths: open brackets about samples that may lead to a peak, and refine them.
+
+A signal is evaluated at samples x along a path. Each sample above its neighbours opens a bracket (`engine.peaks.
+brackets`), unless its curvature rules out that it exceeds the largest sample.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from functools import cache
+
+import numpy as np
+
+from linksweep.engine.kernel.machine_code import INTEGER, INTEGERS, TABLE
+from linksweep.engine.peaks import brackets
+from linksweep.engine.peaks.brackets import BEYOND, BLOCK, PEAK, PEAK_X, in_blocks, open_bracket
+from linksweep.engine.peaks.laid_out import compiled
+from linksweep.engine.peaks.stragglers import might_reach, noise
+
+INTERPRETED_SAMPLES = 100_000
+"""Samples that a search along paths may evaluate interpreted."""
+OF_PATHS = ("f8[:, :, :]", TABLE, TABLE, TABLE, INTEGER, TABLE, TABLE, INTEGERS)
+"""Kinds of the arguments of `open_on_paths`."""
+
+Array = np.ndarray
+Values = Callable[[Array, Array], Array]
+"""A function of tags and places that returns the values of the tagged signals there."""
+
+
+def open_brackets(rows: Array, x: Array, before: Array, after: Array, joined: bool, table: Array, best: Array) -> int:
+    """Note the largest sample of each signal on each path, and open a bracket at each that could lead higher; return
+    their number. Signals are counted path by path.
+
+    Samples `rows` (path, signal, sample) are at `x` (path, sample), their neighbours at `before` and `after`. `joined`
+    tells whether the ends of a path meet.
+    """
+    run: Callable = compiled(open_on_paths, OF_PATHS) if rows.size > INTERPRETED_SAMPLES else open_on_paths
+    arrays, flags = map(np.ascontiguousarray, (rows, x, before, after)), np.zeros(in_blocks(x.shape[1]), dtype=np.int64)
+    return run(*arrays, joined, table, best, flags)
+
+
+def refine(samples: int, table: Array, count: int, best: Array, values: Values) -> None:
+    """Refine brackets, the first `count` of a table, until none is left; `best` takes the peaks of their tags. They are
+    refined by machine code where there were many samples."""
+    steps = brackets.place_trials, brackets.insert_trials, brackets.advance
+    place_trials, insert_trials, advance = _compiled_steps() if samples > INTERPRETED_SAMPLES else steps
+    trials, values_there = (slice(first, first + len(brackets.TRIALS)) for first in (brackets.X1, brackets.F1))
+    for _ in range(brackets.ROUNDS):
+        if not count:
+            return
+        place_trials(table, count)
+        tag = np.tile(table[brackets.TAG, :count].astype(int), len(brackets.TRIALS))
+        table[values_there, :count] = values(tag, table[trials, :count].ravel()).reshape(-1, count)
+        insert_trials(table, count)
+        count = advance(table, count, best)
+
+
+@cache
+def _compiled_steps() -> tuple[Callable, Callable, Callable]:
+    advance = compiled(brackets.advance, (TABLE, INTEGER, TABLE))
+    return brackets.place_trials.compiled(), brackets.insert_trials.compiled(), advance
+
+
+# ------------------------------------------------------------------ plain Python that is translated to machine code
+
+
+def open_on_paths(rows, x, before, after, joined, brackets, best, flags):
+    """Open the brackets of all signals on all paths: rows (path, signal, sample), tagged path by path."""
+    count = 0
+    paths, signals = rows.shape[:2]
+    for path in range(paths):
+        for k in range(signals):
+            where = x[path], before[path], after[path]
+            count = open_on_path(rows[path, k], *where, joined, path * signals + k, brackets, count, best, flags)
+    return count
+
+
+def open_on_path(row, x, before, after, joined, tag, brackets, count, best, flags):
+    """Note a signal's largest sample and open a bracket at each that could lead higher; return their number.
+
+    `joined` tells whether the path's ends meet; `before` and `after` are the places of the samples' neighbours.
+    """
+    n = len(row)
+    summits = find_summits(row, joined, flags)
+    top, at = -math.inf, 0
+    for k in range(summits if summits else n):  # a flat or falling signal has no summit
+        j = flags[k] if summits else k
+        if row[j] > top:
+            top, at = row[j], j
+    around_top = neighbour(row, at, -1, joined), top, neighbour(row, at, 1, joined)
+    best[PEAK, tag], best[BEYOND, tag] = top if top > -math.inf else math.nan, 10.0 * noise(*around_top)
+    best[PEAK_X, tag] = x[at]
+    if abs(top) == math.inf:
+        return count
+    for k in range(summits):
+        j = flags[k]
+        first = j
+        while first > 0 and x[first - 1] == x[j]:
+            first -= 1
+        left, value, right = neighbour(row, first, -1, joined), row[j], neighbour(row, j, 1, joined)
+        ratio = (after[j] - x[j]) / (x[j] - before[first])
+        floor = noise(left, value, right)
+        if might_reach(left, value, right, ratio) > top + 10.0 * floor:
+            start, end = (before[first], left), (after[j], right)
+            open_bracket(brackets, count, start, (x[j], value), end, 0, 0, tag, floor)
+            count += 1
+    return count
+
+
+def find_summits(row, joined, flags):
+    """Write the positions of all samples that exceed their neighbours to `flags`; return their number."""
+    n, summits = len(row), 0
+    for j in range(1, n - 1):
+        below = (row[j] < row[j - 1]) | (row[j] <= row[j + 1]) | (row[j] != row[j])  # a NaN is below, and none above
+        flags[j] = 0 if below else 1
+    for j in (0, n - 1):
+        stands = row[j] >= neighbour(row, j, -1, joined) and row[j] > neighbour(row, j, 1, joined)
+        flags[j] = 1 if stands else 0
+    for j in range(n, in_blocks(n)):
+        flags[j] = 0
+    for start in range(0, n, BLOCK):
+        total = 0
+        for k in range(BLOCK):
+            total += flags[start + k]
+        if total > 0:
+            for j in range(start, start + BLOCK):
+                more = flags[j]
+                flags[summits] = j  # without a branch: it would often be mispredicted
+                summits += more
+    return summits
+
+
+def neighbour(row, j, side, joined):
+    """Return the sample beside another; −inf where there is none."""
+    k, last = j + side, len(row) - 1
+    if k < 0 or k > last:
+        k = last if k < 0 else 0
+        return row[k] if joined and row[k] == row[k] else -math.inf
+    return row[k] if row[k] == row[k] else -math.inf
