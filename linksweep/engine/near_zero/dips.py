@@ -38,7 +38,9 @@ whose zeros alone are."""
 WIDEST = math.tan(0.3)
 """Half-width from which on a dip is as smooth as the motion of the links."""
 UNLIKE = 4.0
-"""Ratio of a rise to that of a parabola from which on a dip may be two."""
+"""Ratio of rises beside a dip, in units of those of its parabola, from which on the dip may be two."""
+SMOOTH = 0.1
+"""By how much the root of such a rise exceeds 1 where nothing but the motion of the links bends a signal."""
 KNOWN = 1e-2
 """Distance of two dips that are the same, relative to the bracket of one."""
 WIDTH_STEPS = 5
@@ -166,7 +168,7 @@ def measure_widths(dips, counts, lanes, own, evaluate, front, results):
         if dips[COUNTS, k] > 0.0 and dips[BROAD, k] < WIDEST:
             owner, top, half, signal = front + k % lanes, dips[TOP, k], dips[FAR, k], dips[OWN, k]
             note(results, owner, top, half, signal, dips[BROAD, k])
-            if not (fits(dips, k, A, F_A) and fits(dips, k, C, F_C)):
+            if may_be_two(dips, k):
                 note(results, owner, top, half, signal, -FLAT)
 
 
@@ -198,8 +200,20 @@ def measure_width(f_top, before, after, width, last, last_steep):
     return (linear > 0.0).where(linear, plain), width, steep
 
 
-def fits(dips, k, end, at_end):
-    """Return whether a dip's parabola tells about how much the signal rises to a sample beside it."""
-    away = (dips[end, k] - dips[TOP, k]) / (1.0 + dips[end, k] * dips[TOP, k]) / dips[BROAD, k]
-    rise, expected = dips[F_TOP, k] - dips[at_end, k], -dips[F_TOP, k] * away * away
-    return expected < UNLIKE * rise and rise < UNLIKE * expected
+def may_be_two(dips, k):
+    """Return whether there may be another dip beside a dip, by the samples on either side.
+
+    With another one at a distance d the signal rises as x²·(1 − x/d)². In units of the parabola that is (1 + a/d)² at a
+    sample at a distance a on the side away from it, and (1 − c/d)² at a sample at c on its own side.
+    """
+    a, c = distance(dips, k, A), distance(dips, k, C)
+    depth, around = -dips[F_TOP, k], 0.5 * (a + c)
+    at_a, at_c = (depth + dips[F_A, k]) / -(depth * a * a), (depth + dips[F_C, k]) / -(depth * c * c)
+    most_at_a, most_at_c = 1.0 + SMOOTH + a / (c + around), 1.0 + SMOOTH + c / (a + around)
+    few = at_a < most_at_a * most_at_a and at_c < most_at_c * most_at_c
+    return not (few and max(1.0, at_a, at_c) < UNLIKE * min(1.0, at_a, at_c))
+
+
+def distance(dips, k, end):
+    """Return how far a sample lies from a dip, in half-widths of the dip."""
+    return abs((dips[end, k] - dips[TOP, k]) / (1.0 + dips[end, k] * dips[TOP, k])) / dips[BROAD, k]

@@ -8,7 +8,7 @@ from linksweep.engine.peaks.samples import grades
 from linksweep.engine.peaks.zeros import ZERO_ROWS
 
 BORDER = 2.0 * np.arctan(samples.BORDER)
-ANGLES = [0.0, 0.3, 0.5 * np.pi, BORDER, np.pi, 4.0, 1.5 * np.pi, BORDER + np.pi - 1e-13]
+ANGLES = [0.0, 0.3, 0.5 * np.pi, BORDER, BORDER + 0.004, np.pi, 4.0, 1.5 * np.pi, BORDER + np.pi - 1e-13]
 NOISE = 1e-15
 
 
@@ -43,6 +43,7 @@ def near_zero(height, kind, cuts=(), noise=NOISE):
             np.zeros((ZERO_ROWS, samples.MOST)), np.zeros(1), events, left,
         )  # fmt: skip
     place, far, _, width = events[:, 0, np.isfinite(events[0, 0])]
+    assert ((place >= samples.ENDS[0]) & (place <= samples.BORDER)).all()
     return 2.0 * np.arctan(place) + np.pi * far, width, left[0] > 0.0
 
 
@@ -116,6 +117,20 @@ def test_two_dips_between_two_samples_are_found_at_the_second_look():
     angles, widths, _ = near_zero(height, dips.TOGGLE, [(at, 1e-3) for at in angles[widths < 0.0]])
     expected = 1.0 + 2.0 * np.arcsin(0.01) * np.array([-1.0, 1.0])
     np.testing.assert_allclose(np.sort(angles[widths > 0.0]), expected, atol=1e-6)
+
+
+def test_the_first_look_finds_both_of_two_dips_or_notes_a_flat_place():
+    for apart in np.arange(0.012, 0.1, 0.008):
+        sine = np.sin(0.25 * apart)
+        for middle in np.linspace(0.3, 0.6, 24):
+
+            def height(angle, middle=middle, sine=sine):
+                return (np.sin(0.5 * (angle - middle)) ** 2 - sine * sine) ** 2 + 3.6e-5 * sine * sine
+
+            angles, widths, left = near_zero(height, dips.TOGGLE)
+            expected = middle + 0.5 * apart * np.array([-1.0, 1.0])
+            both = [np.abs(away(angles[widths > 0.0], at)).min() < 1e-6 for at in expected]
+            assert not left and (all(both) or (widths < 0.0).any())
 
 
 def test_rounding_makes_no_dips():

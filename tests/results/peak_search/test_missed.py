@@ -33,6 +33,9 @@ def test_a_peak_at_once_after_the_start_of_a_piece_is_found():
         ("four-bar with a table", 70_000, 9990),  # between the samples of a piece stood two tops of a pchip curve
         ("four-bar with a function", 440_000, 7464),  # a trial fell 7e-7 of a bracket's width from its middle
         ("four-bar with a function", 450_000, 5741),  # a top between four samples that fall
+        ("Watt six-bar", 220_000, 9453),  # a near-toggle just beyond the end of a half turn
+        ("Watt six-bar", 400_000, 1148),  # two near-toggles, 7° apart, of which the samples show one
+        ("Watt six-bar", 440_000, 4866),  # two near-toggles between two samples
     ],
 )
 def test_designs_that_were_missed_are_no_more(name, part, design):
