@@ -1,1 +1,8 @@
-"""Dips and zeros of signals around the turn, for designs side by side."""
+"""Find where signals come near to zero around the turn, and where they are zero: near-toggles, toggles and jumps.
+
+1. `find` takes designs and the ends of their pieces; `search` goes through them, block by block, side by side.
+2. Signals are evaluated at `samples`, dense about the ends of pieces.
+3. `dips` are bracketed and refined as peaks are; those beyond zero have a zero on either side.
+4. `crossings` are bracketed between samples of opposite signs, and refined with the zeros beside dips.
+5. Narrow dips, zeros, and flat places where there may be more, are noted as events of their design.
+"""

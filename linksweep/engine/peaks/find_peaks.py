@@ -10,8 +10,7 @@ import numpy as np
 
 from linksweep.engine.blocks import block as new_block
 from linksweep.engine.kernel.machine_code import INTEGER, INTEGERS, ROW, TABLE
-from linksweep.engine.peaks import abreast, on_pieces, zeros
-from linksweep.engine.peaks.abreast import PEAK_ANGLE
+from linksweep.engine.peaks import on_pieces, turns, zeros
 from linksweep.engine.peaks.brackets import (
     BEYOND,
     BRACKET_ROWS,
@@ -22,6 +21,7 @@ from linksweep.engine.peaks.brackets import (
 )
 from linksweep.engine.peaks.evaluators import PIECE
 from linksweep.engine.peaks.laid_out import OF_DESIGNS, ON_PIECES, WIDTHS, LaidOut, laid_out, over_blocks
+from linksweep.engine.peaks.turns import PEAK_ANGLE
 from linksweep.engine.run import Fields, Sizes
 from linksweep.engine.trace.plan import Plan
 
@@ -32,7 +32,7 @@ PIECES_TOGETHER = 192
 OF_TURNS = (*[INTEGER] * 5, *OF_DESIGNS, TABLE, TABLE, ROW, TABLE)
 OF_PIECES = (*[INTEGER] * 4, INTEGERS, *ON_PIECES, TABLE, TABLE, ROW, TABLE, TABLE, ROW, TABLE, TABLE)
 OF_ZEROS = (*[INTEGER] * 4, INTEGERS, *ON_PIECES, TABLE, ROW, "f8[:, :, :]")
-"""Kinds of the arguments of `abreast.search`, `on_pieces.search` and `zeros.find_zeros`."""
+"""Kinds of the arguments of `turns.search`, `on_pieces.search` and `zeros.find_zeros`."""
 
 
 class Peaks(NamedTuple):
@@ -89,13 +89,13 @@ def _requests(plan: Plan, signals: tuple[str, ...]) -> list[Plan]:
 def _peaks(plan: Plan, designs: LaidOut, smooth: bool, threads: int | None) -> Peaks:
     """Return the peaks of a plan's signals, which all have the same dims."""
     signals, lanes, blocks = designs.signals, designs.lanes, designs.blocks
-    run, columns = designs.run(abreast.search, OF_TURNS), lanes * len(signals)
+    run, columns = designs.run(turns.search, OF_TURNS), lanes * len(signals)
     best = new_block(EVALUATIONS + 1, columns * blocks)  # a column for each design of each signal, in whole blocks
 
     def work(first: int, last: int) -> None:
         run(
             first, last, designs.designs, lanes, smooth, *designs.arguments(first, last),
-            np.empty((abreast.STATE_ROWS, columns)), np.empty((BRACKET_ROWS, abreast.ROOM)), designs.gathered, best,
+            np.empty((turns.STATE_ROWS, columns)), np.empty((BRACKET_ROWS, turns.ROOM)), designs.gathered, best,
         )  # fmt: skip
 
     over_blocks(work, blocks, designs.designs, threads)
@@ -132,9 +132,9 @@ def _best_on_pieces(pieces: LaidOut, counts: np.ndarray, threads: int | None) ->
     def work(first: int, last: int) -> None:
         run(
             first, last, together, lanes, counts, *pieces.arguments_of_pieces(together),
-            np.zeros((abreast.STATE_ROWS, signals * lanes)), np.zeros((abreast.STATE_ROWS, lanes)),
+            np.zeros((turns.STATE_ROWS, signals * lanes)), np.zeros((turns.STATE_ROWS, lanes)),
             np.zeros(together * signals * lanes), np.zeros((on_pieces.SUMMIT_ROWS, most)),
-            np.zeros((BRACKET_ROWS, abreast.ROOM)), pieces.gathered, np.zeros((on_pieces.OF_PIECE, most)), best,
+            np.zeros((BRACKET_ROWS, turns.ROOM)), pieces.gathered, np.zeros((on_pieces.OF_PIECE, most)), best,
         )  # fmt: skip
 
     over_blocks(work, blocks, len(counts), threads)

@@ -13,7 +13,7 @@ import numpy as np
 from linksweep.engine.kernel.machine_code import INTEGER, INTEGERS, ROW, TABLE
 from linksweep.engine.kernel.translate import translated
 from linksweep.engine.patience import Patience
-from linksweep.engine.peaks import abreast
+from linksweep.engine.peaks import turns
 from linksweep.engine.peaks.evaluators import FAR_WIDTH, NEAR_WIDTH, Evaluators, Functions
 from linksweep.engine.peaks.samples import EVENLY, HALF, grades
 from linksweep.engine.run import Fields, Sizes, flat, ordered, over_threads
@@ -84,7 +84,7 @@ class LaidOut(NamedTuple):
         samples of two half turns, or for some at so many places."""
         lanes, constants = self.lanes, self.functions.constants * self.lanes
         places = places or 2 * self.half + 2
-        blocks = min(last - first, abreast.BLOCKS)
+        blocks = min(last - first, turns.BLOCKS)
         return (
             np.array(self.shape, dtype=np.int64), *self.parameters, grades(self.half, self.evenly),
             *self.functions.passed, np.zeros((blocks, constants)),

@@ -2,7 +2,7 @@
 
 A turn follows each piece there and back, so the samples on the way there show everything. Those of all pieces of a few
 designs are taken first, and the best summit of each signal on each piece noted. Only a summit that may exceed all other
-samples of its design is confirmed by trials, as in `engine.peaks.abreast`: such summits of any pieces and signals side
+samples of its design is confirmed by trials, as in `engine.peaks.turns`: such summits of any pieces and signals side
 by side.
 
 `search` is plain Python that is translated to machine code.
@@ -11,7 +11,10 @@ by side.
 import math
 
 from linksweep.engine.kernel.instructions import call
-from linksweep.engine.peaks.abreast import (
+from linksweep.engine.peaks.brackets import BEYOND, EVALUATIONS, PEAK, gather, refine
+from linksweep.engine.peaks.samples import FEW, HALF
+from linksweep.engine.peaks.summits import open_brackets
+from linksweep.engine.peaks.turns import (
     CONFIRMED,
     FINAL,
     NUMBER,
@@ -24,9 +27,6 @@ from linksweep.engine.peaks.abreast import (
     place_samples,
     try_vertices,
 )
-from linksweep.engine.peaks.brackets import BEYOND, EVALUATIONS, PEAK, gather, refine
-from linksweep.engine.peaks.samples import FEW, HALF
-from linksweep.engine.peaks.stragglers import open_brackets
 
 OF_PIECE = EVALUATIONS + 1
 """Row of `best` after those of a peak: the number of the piece."""

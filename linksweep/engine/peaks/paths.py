@@ -16,7 +16,7 @@ from linksweep.engine.kernel.machine_code import INTEGER, INTEGERS, TABLE
 from linksweep.engine.peaks import brackets
 from linksweep.engine.peaks.brackets import BEYOND, BLOCK, PEAK, PEAK_X, in_blocks, open_bracket
 from linksweep.engine.peaks.laid_out import compiled
-from linksweep.engine.peaks.stragglers import might_reach, noise
+from linksweep.engine.peaks.summits import might_reach, noise
 
 INTERPRETED_SAMPLES = 100_000
 """Samples that a search along paths may evaluate interpreted."""

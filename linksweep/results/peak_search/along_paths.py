@@ -14,7 +14,7 @@ import numpy as np
 
 from linksweep.engine.peaks import brackets
 from linksweep.engine.peaks.paths import open_brackets, refine
-from linksweep.engine.peaks.stragglers import might_reach
+from linksweep.engine.peaks.summits import might_reach
 from linksweep.engine.run import Field
 from linksweep.results.peak_search.groups import Group
 from linksweep.results.peak_search.paths import QUARTER, Part, Paths

@@ -9,10 +9,10 @@ import xarray as xr
 
 import linksweep as ls
 from linksweep.engine.peaks import laid_out, on_pieces, zeros
-from linksweep.engine.peaks.abreast import EVALUATIONS, ROOM, STATE_ROWS
 from linksweep.engine.peaks.brackets import BRACKET_ROWS, PEAK, PEAK_X
 from linksweep.engine.peaks.evaluators import Functions
 from linksweep.engine.peaks.samples import HALF, SAMPLES, grades
+from linksweep.engine.peaks.turns import EVALUATIONS, ROOM, STATE_ROWS
 from linksweep.physics.closures.crank_angle import place_on_piece
 from linksweep.results.peak_search import pieces
 from linksweep.results.peak_search.groups import groups

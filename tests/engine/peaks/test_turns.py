@@ -7,22 +7,22 @@ import pytest
 import xarray as xr
 
 import linksweep as ls
-from linksweep.engine.peaks import abreast, on_pieces
+from linksweep.engine.peaks import on_pieces, turns
 from linksweep.engine.peaks.brackets import BEST_ROWS, BRACKET_ROWS, PEAK
 from linksweep.engine.peaks.evaluators import Evaluators
 from linksweep.engine.peaks.lanewise import Around, Lanewise
 from linksweep.engine.peaks.samples import HALF, SAMPLES, grades
-from linksweep.engine.peaks.stragglers import might_reach_between
+from linksweep.engine.peaks.summits import might_reach_between
 from linksweep.engine.trace.plan import plan
 
 PLACED = 2 * HALF + 2
-LANEWISE = {name: value for name, value in {**vars(abreast), **vars(on_pieces)}.items() if isinstance(value, Lanewise)}
+LANEWISE = {name: value for name, value in {**vars(turns), **vars(on_pieces)}.items() if isinstance(value, Lanewise)}
 SPECIAL = (0.0, -0.0, 1.0, np.inf, -np.inf, np.nan)
 
 
 def table(seed: int, columns: int = 24) -> np.ndarray:
     random = np.random.default_rng(seed)
-    numbers = random.normal(size=(abreast.STATE_ROWS, columns)) * 10.0 ** random.integers(-3, 4, columns)
+    numbers = random.normal(size=(turns.STATE_ROWS, columns)) * 10.0 ** random.integers(-3, 4, columns)
     special = random.random(numbers.shape) < 0.05
     numbers[special] = random.choice(SPECIAL, special.sum())
     return numbers
@@ -48,15 +48,15 @@ def test_a_constant_is_stored_in_all_lanes():
 
 def test_the_best_summit_and_the_next_are_those_of_a_search_one_by_one():
     """Against a plain loop over the samples of each signal."""
-    columns, state = 8, np.zeros((abreast.STATE_ROWS, 8))
+    columns, state = 8, np.zeros((turns.STATE_ROWS, 8))
     rows = np.random.default_rng(1).normal(size=(SAMPLES, columns))
-    abreast.compare_samples(rows.ravel(), SAMPLES, state, columns)
+    turns.compare_samples(rows.ravel(), SAMPLES, state, columns)
     before, after = np.roll(rows, 1, axis=0), np.roll(rows, -1, axis=0)
     reach = np.where((before < rows) & (after <= rows), 3.0 * rows - before - after, -np.inf)
     ranked = np.sort(reach, axis=0)
-    np.testing.assert_array_equal(state[abreast.SUMMIT], reach.argmax(axis=0))
-    np.testing.assert_allclose(state[abreast.REACH], ranked[-1], rtol=1e-15)
-    np.testing.assert_allclose(state[abreast.OTHER], ranked[-2], rtol=1e-15)
+    np.testing.assert_array_equal(state[turns.SUMMIT], reach.argmax(axis=0))
+    np.testing.assert_allclose(state[turns.REACH], ranked[-1], rtol=1e-15)
+    np.testing.assert_allclose(state[turns.OTHER], ranked[-2], rtol=1e-15)
 
 
 @pytest.mark.parametrize(("top", "dip"), [(0.4, 1.1), (0.5, 1.2), (0.8, 1.3), (-0.5, 3.5), (1.2, 1.8)])
@@ -69,13 +69,13 @@ def test_a_top_between_two_of_four_samples_that_rise_or_fall_is_noted(top, dip, 
     reach = might_reach_between(*samples)
     assert (reach >= np.polyval(curve, top)) if 0.0 < top < 1.0 else (reach == -np.inf)
     table = np.append(samples, 0.0)[:, None]
-    Lanewise(lambda *four: (abreast.height_between(*four),), (0, 1, 2, 3), (4,))(table, 1)
+    Lanewise(lambda *four: (turns.height_between(*four),), (0, 1, 2, 3), (4,))(table, 1)
     assert table[4] == reach
     for before in (3, 4):  # the samples are compared two by two
-        state, padded = np.zeros((abreast.STATE_ROWS, 1)), np.full((2 * HALF + 4, 1), samples.min() - 1.0)
+        state, padded = np.zeros((turns.STATE_ROWS, 1)), np.full((2 * HALF + 4, 1), samples.min() - 1.0)
         padded[before : before + 4, 0] = samples
         on_pieces.compare_closely(padded.ravel(), len(padded), state, 1)
-        assert reach in [*state[[abreast.REACH, abreast.OTHER], 0], -np.inf]
+        assert reach in [*state[[turns.REACH, turns.OTHER], 0], -np.inf]
 
 
 def four_bars(designs: int) -> ls.Scene:
@@ -115,8 +115,8 @@ def test_evaluators_have_the_same_bits_compiled_and_interpreted(one_geometry):
     assert (compiled.shared > 0) == one_geometry
     lanes, places = compiled.lanes, 2 * PLACED * compiled.lanes
     of_turn = np.zeros(places + compiled.shared)
-    assert abreast.place_samples(np.repeat([0.2, 1.0], lanes), lanes, grades(), of_turn) == 2 * lanes
-    assert abreast.place_samples(np.repeat([0.2, 1.0], lanes), lanes, grades(), of_turn) == 0
+    assert turns.place_samples(np.repeat([0.2, 1.0], lanes), lanes, grades(), of_turn) == 2 * lanes
+    assert turns.place_samples(np.repeat([0.2, 1.0], lanes), lanes, grades(), of_turn) == 0
     values = [scene.inputs.fields[node.value].values for node in evaluators.inputs]
     starts = np.cumsum([0, *(value.size for value in values[:-1])])
     parameters = np.array([scene.inputs.sizes[dim] for dim in request.loops]), np.concatenate(values, axis=None), starts
@@ -168,7 +168,7 @@ def test_designs_on_one_geometry_have_the_bits_of_those_on_equal_ones():
 
 def test_samples_are_placed_by_the_near_toggles_with_one_more_on_either_side():
     x, widths = np.empty(2 * PLACED), np.array([0.01, 1.0])
-    abreast.place_samples(widths, 1, grades(), x)
+    turns.place_samples(widths, 1, grades(), x)
     near, far = 2.0 * np.degrees(np.arctan(x.reshape(2, PLACED)))
     for angles, other in ((near, far), (far, near)):
         assert angles[1] == -90.0 and angles[1 + HALF] == 0.0 and angles[-1] == 90.0
@@ -202,10 +202,10 @@ def test_of_three_summits_nearly_as_high_the_highest_is_the_peak():
     best = np.empty((BEST_ROWS + 1, len(phase)))
     one = np.array([0], dtype=np.int64)
     with np.errstate(all="ignore"):
-        abreast.search(
+        turns.search(
             0, len(phase), len(phase), 1, True, np.array([len(phase)]), phase, one, grades(), prepare, share,
-            sample, evaluate, np.zeros((abreast.BLOCKS, 3)), np.zeros(2 * PLACED), np.zeros(SAMPLES + 1),
-            np.zeros((abreast.STATE_ROWS, 1)), np.zeros((BRACKET_ROWS, abreast.ROOM)), np.zeros(3), best,
+            sample, evaluate, np.zeros((turns.BLOCKS, 3)), np.zeros(2 * PLACED), np.zeros(SAMPLES + 1),
+            np.zeros((turns.STATE_ROWS, 1)), np.zeros((BRACKET_ROWS, turns.ROOM)), np.zeros(3), best,
         )  # fmt: skip
     np.testing.assert_allclose(best[PEAK], 6.0 + little, rtol=2e-11)
-    np.testing.assert_allclose(np.cos(np.radians(best[abreast.PEAK_ANGLE]) - phase), 1.0, atol=1e-9)
+    np.testing.assert_allclose(np.cos(np.radians(best[turns.PEAK_ANGLE]) - phase), 1.0, atol=1e-9)

@@ -15,7 +15,7 @@ from linksweep.engine.kernel.instructions import call
 from linksweep.engine.peaks.brackets import BEYOND, EVALUATIONS, NOISE, PEAK, PEAK_FAR, PEAK_X, RISE, larger, refine
 from linksweep.engine.peaks.lanewise import around, copy_lanes, lanewise
 from linksweep.engine.peaks.samples import GRADES, HALF, SAMPLES
-from linksweep.engine.peaks.stragglers import open_brackets, slopes_between
+from linksweep.engine.peaks.summits import open_brackets, slopes_between
 
 PEAK_ANGLE = PEAK_X
 """Row of `best` that has angles from the near-toggle [degree], in place of tangents, once a search of turns is done."""
