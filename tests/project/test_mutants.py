@@ -60,7 +60,7 @@ def test_the_runner_reports_which_test_catches_a_mutant():
 
 
 def test_the_exit_code_is_1_where_a_mutant_survives(monkeypatch, capsys):
-    monkeypatch.setattr(Copy, "failures", lambda self, tests, *options: [])
+    monkeypatch.setattr(Copy, "failures", lambda self, tests, *options, **limits: [])
     monkeypatch.setattr(Copy, "catcher", lambda self, mutant: "a test" if mutant is CAUGHT else None)
     for listed, code, text in (([CAUGHT], 0, "caught    a disk is"), ([CAUGHT, HARMLESS], 1, "SURVIVED  the same")):
         monkeypatch.setattr("benchmarks.stress.mutants.mutants", lambda listed=listed: listed)
@@ -69,7 +69,7 @@ def test_the_exit_code_is_1_where_a_mutant_survives(monkeypatch, capsys):
 
 
 def test_tests_that_fail_without_a_mutant_are_named(monkeypatch, capsys):
-    monkeypatch.setattr(Copy, "failures", lambda self, tests, *options: ["tests/mechanisms/test_links.py::test_red"])
+    monkeypatch.setattr(Copy, "failures", lambda self, tests, *options, **limits: ["tests/mechanisms/test_links.py::test_red"])
     assert main(["--only", "a disk's"]) == 1
     text = capsys.readouterr().out.splitlines()
     assert text[0] == "fails without a mutant: tests/mechanisms/test_links.py::test_red"
