@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -24,7 +25,7 @@ _NAME = re.compile(rf"(?:{'|'.join(FORCES)}|stress)(\d+)(?:_.*)?")
 
 def with_sections(scene: Scene, names: Iterable[str] | str | None) -> Scene:
     """Copy a scene with places along its links if quantities at sections are among the names, and it states none."""
-    listed = [names] if isinstance(names, str) else list(names or ())
+    listed = [names] if isinstance(names, str) else [name for name in names or () if isinstance(name, str)]
     if not isinstance(scene, Scene) or scene.section is not None or not any(map(link_of, listed)):
         return scene
     return with_sound(scene, section=places(np.linspace(0.0, 1.0, COUNT))) if scene.mechanism.beams else scene
@@ -48,9 +49,10 @@ def marks(scene: Scene, role: str) -> list[Number]:
     return [np.clip(share + beyond, 0.0, 1.0) for share in shares for beyond in (0.0, BEYOND)]
 
 
-def link_of(name: Any) -> int:
+@cache
+def link_of(name: str) -> int:
     """Return the number of the link of which a name is a section force or a stress; 0 for any other name."""
-    match = _NAME.fullmatch(name) if isinstance(name, str) else None
+    match = _NAME.fullmatch(name)
     return int(match[1]) if match else 0
 
 
