@@ -69,7 +69,8 @@ def test_the_exit_code_is_1_where_a_mutant_survives(monkeypatch, capsys):
 
 
 def test_tests_that_fail_without_a_mutant_are_named(monkeypatch, capsys):
-    monkeypatch.setattr(Copy, "failures", lambda self, tests, *options, **limits: ["tests/mechanisms/test_links.py::test_red"])
+    red = "tests/mechanisms/test_links.py::test_red"
+    monkeypatch.setattr(Copy, "failures", lambda self, tests, *options, **limits: [red])
     assert main(["--only", "a disk's"]) == 1
     text = capsys.readouterr().out.splitlines()
     assert text[0] == "fails without a mutant: tests/mechanisms/test_links.py::test_red"
