@@ -8,14 +8,7 @@ opened about dips (`dips.py`) and zeros (`crossings.py`), which are then refined
 
 from linksweep.engine.kernel.instructions import call
 from linksweep.engine.near_zero.crossings import find_zeros, look_for_crossings
-from linksweep.engine.near_zero.dips import (
-    TOGGLE,
-    check_noise,
-    look_for_dips,
-    measure_widths,
-    open_sides,
-    refine_dips,
-)
+from linksweep.engine.near_zero.dips import TOGGLE, check_noise, look_for_dips, measure_widths, open_sides, refine_dips
 from linksweep.engine.near_zero.samples import END, place_samples
 
 

@@ -11,14 +11,7 @@ import numpy as np
 from linksweep.engine.blocks import block as new_block
 from linksweep.engine.kernel.machine_code import INTEGER, INTEGERS, ROW, TABLE
 from linksweep.engine.peaks import on_pieces, turns, zeros
-from linksweep.engine.peaks.brackets import (
-    BEYOND,
-    BRACKET_ROWS,
-    EVALUATIONS,
-    PEAK,
-    PEAK_FAR,
-    PEAK_X,
-)
+from linksweep.engine.peaks.brackets import BEYOND, BRACKET_ROWS, EVALUATIONS, PEAK, PEAK_FAR, PEAK_X
 from linksweep.engine.peaks.evaluators import PIECE
 from linksweep.engine.peaks.laid_out import OF_DESIGNS, ON_PIECES, WIDTHS, LaidOut, laid_out, over_blocks
 from linksweep.engine.peaks.turns import PEAK_ANGLE
@@ -60,12 +53,7 @@ class PeaksOnPieces(NamedTuple):
 
 
 def find_peaks(
-    plan: Plan,
-    signals: tuple[str, ...],
-    inputs: Fields,
-    sizes: Sizes,
-    smooth: bool,
-    threads: int | None,
+    plan: Plan, signals: tuple[str, ...], inputs: Fields, sizes: Sizes, smooth: bool, threads: int | None
 ) -> list[Peaks]:
     """Return the largest value of each signal over the turn, for every design; `smooth` tells that none has jumps or
     kinks."""

@@ -23,12 +23,7 @@ ONE = "_one"
 
 
 def one_by_one(
-    scene: Scene,
-    designs: Array,
-    table: Table,
-    names: tuple[str, ...],
-    own: Fields,
-    places: InputForms,
+    scene: Scene, designs: Array, table: Table, names: tuple[str, ...], own: Fields, places: InputForms
 ) -> tuple[Plan, Fields]:
     """Return the plan of quantities of a table between samples, and its inputs: a value for each of these designs along
     the dim `ONE`, and `own` ones besides; `places` are the forms of the search's own inputs. Those that change over the

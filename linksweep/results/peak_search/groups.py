@@ -126,10 +126,7 @@ def groups(
 
 
 def assembled_groups(
-    scene: Any,
-    names: tuple[str, ...],
-    kinds: tuple[float, ...] = (EVERYWHERE, PARTLY),
-    designs: Array | None = None,
+    scene: Any, names: tuple[str, ...], kinds: tuple[float, ...] = (EVERYWHERE, PARTLY), designs: Array | None = None
 ) -> Iterator[tuple[float, Any]]:
     """Yield the designs of each of these kinds of assembly, with the kind, in groups."""
     chosen = () if designs is None else (designs,)
