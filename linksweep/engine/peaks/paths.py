@@ -20,6 +20,10 @@ from linksweep.engine.peaks.summits import might_reach, noise
 
 INTERPRETED_SAMPLES = 100_000
 """Samples that a search along paths may evaluate interpreted."""
+TWIN, SMOOTH = 1e-6, 1000.0
+"""Distance between two samples, relative to that of the next, and difference of a signal there, in units of its noise,
+below which they are the two sides of a break at which it does not jump: rounding tells which of them is higher, and the
+bracket about one reaches beyond the other."""
 OF_PATHS = ("f8[:, :, :]", TABLE, TABLE, TABLE, INTEGER, TABLE, TABLE, INTEGERS)
 """Kinds of the arguments of `open_on_paths`."""
 
@@ -95,14 +99,20 @@ def open_on_path(row, x, before, after, joined, tag, brackets, count, best, flag
         return count
     for k in range(summits):
         j = flags[k]
-        first = j
+        first = last = j
         while first > 0 and x[first - 1] == x[j]:
             first -= 1
         left, value, right = neighbour(row, first, -1, joined), row[j], neighbour(row, j, 1, joined)
-        ratio = (after[j] - x[j]) / (x[j] - before[first])
-        floor = noise(left, value, right)
+        floor, back, ahead = noise(left, value, right), x[j] - before[first], after[j] - x[j]
+        if first > 0 and back < TWIN * ahead and value - left < SMOOTH * floor:
+            first -= 1
+            left = neighbour(row, first, -1, joined)
+        elif last < n - 1 and ahead < TWIN * back and value - right < SMOOTH * floor:
+            last += 1
+            right = neighbour(row, last, 1, joined)
+        ratio = (after[last] - x[j]) / (x[j] - before[first])
         if might_reach(left, value, right, ratio) > top + 10.0 * floor:
-            start, end = (before[first], left), (after[j], right)
+            start, end = (before[first], left), (after[last], right)
             open_bracket(brackets, count, start, (x[j], value), end, 0, 0, tag, floor)
             count += 1
     return count

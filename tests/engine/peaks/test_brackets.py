@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from linksweep.engine.peaks import brackets as b
+from linksweep.engine.peaks import paths
 
 TRIALS = list(itertools.product((-2.0, -0.5, 0.0, 0.3, 2.0), (0.5, 1.0, 1.5, np.nan, np.inf)))
 
@@ -85,3 +86,17 @@ def test_no_trial_lies_so_close_to_the_middle_that_rounding_alone_tells_them_apa
     away = np.abs(table[list(b.TRIALS)] - middle)
     assert ((away == 0.0) | (away >= b.NEARBY * 2.0)).all()
     assert (away == 0.0).any()
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_a_peak_beside_a_break_without_a_jump_is_found_on_either_side(side):
+    """1 − (x + 0.3)², which rounding makes higher on the far side of a break at 0; and the same mirrored."""
+    x = np.sort(side * np.array([-1.0, -1e-14, 0.0, 1.0]))[None]
+    values = 1.0 - (x + side * 0.3) ** 2
+    values[0, x[0] == 0.0] = values[0, 1:3].max() * (1.0 + 1e-15)
+    before, after = np.append(x[:, :1] - 1e-9, x[:, :-1], axis=1), np.append(x[:, 1:], x[:, -1:] + 1e-9, axis=1)
+    table, best = np.zeros((b.BRACKET_ROWS, b.BLOCK)), np.empty((b.BEST_ROWS, 1))
+    count = paths.open_brackets(values[None], x, before, after, False, table, best)
+    paths.refine(x.size, table, count, best, lambda tag, at: 1.0 - (at + side * 0.3) ** 2)
+    assert best[b.PEAK, 0] == pytest.approx(1.0, rel=1e-11)
+    assert best[b.PEAK_X, 0] == pytest.approx(-side * 0.3, abs=1e-5)
