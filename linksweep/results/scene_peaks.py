@@ -316,7 +316,8 @@ def _bound(peak: SignalPeak, quantity: Quantity) -> Field:
         return peak.bound
     value, bound = peak.value.values, peak.bound.values
     with np.errstate(invalid="ignore"):
-        return Field(peak.value.dims, bound / (np.sqrt(value + bound) + np.sqrt(value)))
+        larger = bound / (np.sqrt(value + bound) + np.sqrt(value))
+    return Field(peak.value.dims, np.where(bound == 0.0, 0.0, larger))  # also of a force that is 0 everywhere
 
 
 def _largest(*values: np.ndarray) -> np.ndarray:

@@ -218,6 +218,11 @@ def test_a_design_alone_has_the_bits_that_it_has_among_others(scene):
             np.testing.assert_array_equal(values, whole[name].isel(design=k, missing_dims="ignore"), err_msg=name)
 
 
+def test_a_force_that_is_zero_everywhere_can_be_no_larger():
+    worst = ls.peaks(ls.Scene(HINGE, 1.0), of=["F32", "F32_bound"])
+    assert float(worst.F32_peak) == float(worst.F32_bound) == 0.0
+
+
 def test_branches_of_one_geometry_have_the_bits_that_each_has_alone(monkeypatch):
     monkeypatch.setattr(laid_out, "INTERPRETED_DESIGNS", -1)
     scene = replace(PRESS, omega2=xr.DataArray([20.0, 30.0], dims="speed"))
