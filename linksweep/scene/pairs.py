@@ -7,8 +7,8 @@ change from sample to sample, so that the plan and the kernels of `sweep` serve 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from linksweep.scene.scene import Scene
 
 Array = np.ndarray
+Table = TypeVar("Table", bound=NamedTuple)
 Places = Mapping[str, Array]
 """Indices of some designs along each design dim."""
 
@@ -120,6 +121,17 @@ def inputs_along(dim: str, request: Plan, inputs: Inputs, places: Places) -> dic
         for name, field in inputs.fields.items()
         if name in request.inputs
     }
+
+
+def some_of(table: Table, which: Array) -> Table:
+    """Return the rows of a table, a named tuple of equally long arrays, with these indices."""
+    return table._make(numbers[which] for numbers in table)
+
+
+def joined(tables: Iterable[Table]) -> Table:
+    """Return several tables of one kind as one."""
+    first, *others = tables
+    return first._make(map(np.concatenate, zip(first, *others, strict=True)))
 
 
 def by_row(rows: Array, values: Array, count: int) -> Array:

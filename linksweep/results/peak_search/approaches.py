@@ -20,7 +20,7 @@ from linksweep.results.compute import compute
 from linksweep.results.peak_search.between import positions_at
 from linksweep.results.peak_search.groups import Group, crossing
 from linksweep.scene.dimensions import aligned
-from linksweep.scene.pairs import Array
+from linksweep.scene.pairs import Array, joined
 from linksweep.scene.scene import Scene
 
 WIDE = np.radians(20.0)
@@ -52,15 +52,15 @@ class Approaches(NamedTuple):
         return self.angle[:, None] + self.width[:, None] * np.sinh(grade)
 
 
-def approaches(group: Group, angles: Array, joined: bool = True) -> Approaches:
+def approaches(group: Group, angles: Array, ends_meet: bool = True) -> Approaches:
     """Return the narrow approaches between the crank angles (design, sample) [degree] of a group's designs.
 
-    `joined` is True where the last angle of a design is followed by its first, as on a whole turn.
+    `ends_meet` is True where the last angle of a design is followed by its first, as on a whole turn.
     """
     rows = np.repeat(np.arange(len(angles)), angles.shape[1])
     names = group.scene.approaches()
     values = [group.values(pair, rows, angles.ravel()).reshape(2, *angles.shape) for pair in names]
-    return concatenated([_narrow(group, angles, pair, both, joined) for pair, both in zip(names, values, strict=True)])
+    return joined([_narrow(group, angles, pair, both, ends_meet) for pair, both in zip(names, values, strict=True)])
 
 
 def approaches_of_turns(group: Group) -> Approaches:
@@ -71,20 +71,16 @@ def approaches_of_turns(group: Group) -> Approaches:
     even, names = np.arange(0.0, group.scene.period, STEP), group.scene.approaches()
     values = [positions_at(group.scene, pair, group.designs, even) for pair in names]
     angles = np.broadcast_to(even, (len(group.designs), len(even)))
-    return concatenated([_narrow(group, angles, pair, both) for pair, both in zip(names, values, strict=True)])
+    return joined([_narrow(group, angles, pair, both) for pair, both in zip(names, values, strict=True)])
 
 
-def concatenated(parts: list[Approaches]) -> Approaches:
-    return Approaches(*map(np.concatenate, zip(*parts, strict=True)))
-
-
-def _narrow(group: Group, angles: Array, names: tuple[str, str], both: Array, joined: bool = True) -> Approaches:
+def _narrow(group: Group, angles: Array, names: tuple[str, str], both: Array, ends_meet: bool = True) -> Approaches:
     """Return the narrow approaches of one spring or damper from its l·dl/dθ2 and width at angles (design, sample)."""
     (slope, width), (slopes, widths) = names, both
     rising, narrower = np.roll(slopes, -1, axis=1), np.minimum(widths, np.roll(widths, -1, axis=1))
     steps = np.mod(np.roll(angles, -1, axis=1) - angles, group.scene.period)
     passing = (slopes < 0.0) & (rising >= 0.0) & (narrower < WIDE + 2.0 * np.radians(steps))
-    passing[:, -1] &= joined
+    passing[:, -1] &= ends_meet
     row, k = np.nonzero(passing)
     ends = (angles[row, k], slopes[row, k]), (angles[row, k] + steps[row, k], rising[row, k])
     angle = crossing(group.of(slope, row), *ends, STEPS)

@@ -70,7 +70,7 @@ def arcs_within(part: Part, group: Group, pieces: int = 1) -> Paths:
 def about_approaches_on_arcs(group: Group) -> Paths:
     """Return a window about every closest approach on the arcs of each design."""
     row, middle, half = _middles(arc_ends(group))
-    close = approaches(group.some(row), _angles(middle, half, _even(group)), joined=False)
+    close = approaches(group.some(row), _angles(middle, half, _even(group)), ends_meet=False)
     return windows_about(close._replace(row=row[close.row]))
 
 

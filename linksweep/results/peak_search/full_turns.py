@@ -22,7 +22,7 @@ from linksweep.engine.trace.plan import Plan
 from linksweep.physics.algebra import planar
 from linksweep.physics.algebra.arithmetic import Number
 from linksweep.results.peak_search.between import ONE, number_of, one_by_one
-from linksweep.scene.pairs import Array, by_row
+from linksweep.scene.pairs import Array, by_row, joined, some_of
 from linksweep.scene.scene import Scene
 
 AT_ONCE = 8192
@@ -54,20 +54,11 @@ class Events(NamedTuple):
     part: Array
     width: Array
 
-    def some(self, which: Array) -> Events:
-        """Return the events with these indices."""
-        return Events(*(numbers[which] for numbers in self))
-
     @property
     def angle(self) -> Array:
         """Angle from the middle of the first half turn [degree]."""
         half = self.place > samples.BORDER
         return 2.0 * np.degrees(np.arctan(self.place - samples.FAR_HALF * half)) + 180.0 * half
-
-
-def _joined(*some: Events) -> Events:
-    """Return several tables as one."""
-    return Events(*map(np.concatenate, zip(*some, strict=True)))
 
 
 def full_turns(scene: Scene, limits: tuple[Limit, ...], designs: Array) -> tuple[Array, Events, Array]:
@@ -78,7 +69,7 @@ def full_turns(scene: Scene, limits: tuple[Limit, ...], designs: Array) -> tuple
     every = np.arange(len(designs) if simple else 0)
     parts = np.split(every, range(AT_ONCE, len(every), AT_ONCE))
     settled, some = zip(*(_search(scene, limits, designs, rows) for rows in parts), strict=True)
-    events = _joined(*some)
+    events = joined(some)
     middle = number_of(scene, scene.mechanism.near_toggle_angle, designs)
     return np.concatenate(settled), events, events.angle + middle[events.row]
 
@@ -98,17 +89,17 @@ def _search(scene: Scene, limits: tuple[Limit, ...], designs: Array, rows: Array
             break
         events, left = _look(scene, limits, designs[rows], cuts)
         before_others = (events.part < len(limits) - 1) & (events.width > 0.0) & (events.width < NARROW)
-        narrow = events.some(before_others | (events.width < 0.0))
+        narrow = some_of(events, before_others | (events.width < 0.0))
         again = np.bincount(narrow.row[~_are_among(narrow, cuts, len(rows))], minlength=len(rows)) > 0
         done = ~(left | again)
         settled.append(rows[done])
-        own = events.some(done[events.row] & (events.width >= 0.0))
+        own = some_of(events, done[events.row] & (events.width >= 0.0))
         results.append(own._replace(row=rows[own.row]))
         again &= ~left
-        cuts = _joined(narrow, cuts.some(cuts.width < 0.0))  # a place is flat no more on pieces that end there
-        cuts = cuts.some(again[cuts.row])
+        cuts = joined([narrow, some_of(cuts, cuts.width < 0.0)])  # a place is flat no more on pieces that end there
+        cuts = some_of(cuts, again[cuts.row])
         rows, cuts = rows[again], _apart(cuts._replace(row=(np.cumsum(again) - 1)[cuts.row]))
-    return np.concatenate(settled), _joined(*results)
+    return np.concatenate(settled), joined(results)
 
 
 def _are_among(narrow: Events, cuts: Events, designs: int) -> Array:
@@ -120,12 +111,12 @@ def _are_among(narrow: Events, cuts: Events, designs: int) -> Array:
 
 def _apart(cuts: Events) -> Events:
     """Return cuts in order, without the wider ones of those that are nearly the same."""
-    cuts = cuts.some(np.lexsort((cuts.place, cuts.row)))
+    cuts = some_of(cuts, np.lexsort((cuts.place, cuts.row)))
     width = abs(cuts.width)
     wider = np.maximum(width[1:], width[:-1])
     same = (np.diff(cuts.row) == 0) & (np.diff(cuts.place) < SAME * wider)
     dropped = np.flatnonzero(same) + (width[1:] >= width[:-1])[same]
-    return _apart(cuts.some(np.delete(np.arange(len(width)), dropped))) if len(dropped) else cuts
+    return _apart(some_of(cuts, np.delete(np.arange(len(width)), dropped))) if len(dropped) else cuts
 
 
 def _look(scene: Scene, limits: tuple[Limit, ...], designs: Array, cuts: Events) -> tuple[Events, Array]:

@@ -12,9 +12,8 @@ dense about the ends of these arcs and about near-toggles: pins move quickly the
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
 from functools import lru_cache
-from typing import NamedTuple, TypeVar
+from typing import NamedTuple
 
 import numpy as np
 
@@ -26,7 +25,7 @@ from linksweep.results.compute import compute, zeros_of
 from linksweep.results.peak_search.between import EVERYWHERE, NEVER, PARTLY
 from linksweep.results.peak_search.curves import SEAM, WIDE, Curves, Extremes, parabola, zeros_and_extremes
 from linksweep.results.peak_search.full_turns import full_turns
-from linksweep.scene.pairs import Array, by_row, different_designs, in_period
+from linksweep.scene.pairs import Array, by_row, different_designs, in_period, joined, some_of
 from linksweep.scene.scene import Scene
 
 AT_ONCE = 512
@@ -51,10 +50,6 @@ class Arcs(NamedTuple):
     start_part: Array
     end_part: Array
 
-    def some(self, which: Array) -> Arcs:
-        """Return the arcs with these indices."""
-        return Arcs(*(numbers[which] for numbers in self))
-
     @property
     def whole(self) -> Array:
         """True for each arc that is a whole period without a toggle."""
@@ -68,10 +63,6 @@ class NearToggles(NamedTuple):
     angle: Array
     width: Array
 
-    def some(self, which: Array) -> NearToggles:
-        """Return those with these indices."""
-        return NearToggles(*(numbers[which] for numbers in self))
-
 
 NOWHERE = NearToggles(np.empty(0, dtype=int), np.empty(0), np.empty(0))
 
@@ -82,13 +73,6 @@ class Zeros(NamedTuple):
     row: Array
     angle: Array
     part: Array
-
-    def some(self, which: Array) -> Zeros:
-        """Return those with these indices."""
-        return Zeros(*(numbers[which] for numbers in self))
-
-
-Numbers = TypeVar("Numbers", Arcs, NearToggles, Zeros)
 
 
 class Limits(NamedTuple):
@@ -146,24 +130,19 @@ def find_limits(scene: Scene, limits: tuple[Limit, ...], designs: Array) -> Limi
     whole, events, angle = full_turns(scene, limits, designs)
     zero, none = np.zeros(len(whole)), np.full(len(whole), NO_TOGGLE)
     arcs = Arcs(whole, zero, zero + scene.period, none, none)
-    near = NearToggles(events.row, angle, events.width).some(events.width > 0.0)
-    some = [(arcs, near, Zeros(events.row, angle, events.part).some(events.width == 0.0))]
+    near = some_of(NearToggles(events.row, angle, events.width), events.width > 0.0)
+    some = [(arcs, near, some_of(Zeros(events.row, angle, events.part), events.width == 0.0))]
     others = np.setdiff1d(np.arange(len(designs)), whole, assume_unique=True)
     step = max(1, AT_ONCE // round(scene.period / scene.mechanism.period))
     some += [_search(scene, limits, designs, others[k : k + step]) for k in range(0, len(others), step)]
     arcs, near, zeros = zip(*some, strict=True)
-    tables = _joined(Arcs, arcs), _joined(NearToggles, near), _joined(Zeros, zeros)
+    tables = joined(arcs), joined(near), joined(zeros)
     return _tables(*tables, len(designs), len(limits), scene.period)
-
-
-def _joined(kind: Callable[..., Numbers], some: Iterable[Numbers]) -> Numbers:
-    """Return several tables of one kind as one."""
-    return kind(*map(np.concatenate, zip(*some, strict=True)))
 
 
 def _tables(arcs: Arcs, near: NearToggles, zeros: Zeros, designs: int, parts: int, period: float) -> Limits:
     """Return the limits of so many designs, of machines with so many parts, as tables."""
-    arcs = arcs.some(np.lexsort((in_period(arcs.start, period), arcs.row)))
+    arcs = some_of(arcs, np.lexsort((in_period(arcs.start, period), arcs.row)))
     start, count = in_period(arcs.start, period), np.bincount(arcs.row, minlength=designs)
     whole = np.bincount(arcs.row, arcs.whole, designs) > 0
     known = np.flatnonzero(zeros.part != NO_TOGGLE)
@@ -189,9 +168,9 @@ def _search(scene: Scene, limits: tuple[Limit, ...], every: Array, rows: Array) 
     near = NOWHERE
     zeros = [Zeros(*(np.empty(0, dtype=kind) for kind in (int, float, int)))]
     for part, limit in enumerate(limits):
-        pieces, known = [arcs.some(np.empty(0, dtype=int))], [near]
+        pieces, known = [some_of(arcs, np.empty(0, dtype=int))], [near]
         for turns in (True, False):
-            own = arcs.some(np.flatnonzero(arcs.whole == turns))
+            own = some_of(arcs, np.flatnonzero(arcs.whole == turns))
             if not len(own.row):
                 continue
             curves = Curves(scene, limit, designs[own.row], _places(own, near, count, turns, scene.period), turns)
@@ -199,9 +178,9 @@ def _search(scene: Scene, limits: tuple[Limit, ...], every: Array, rows: Array) 
             known.append(near_toggles)
             pieces.append(_pieces(curves, own, crossed, part) if limit.zeros == "toggle" else own)
             zeros += [touched] if limit.zeros == "toggle" else [touched, crossed._replace(row=own.row[crossed.row])]
-        arcs, near = _joined(Arcs, pieces), _joined(NearToggles, known)
+        arcs, near = joined(pieces), joined(known)
     zeros += [Zeros(arcs.row, arcs.start, arcs.start_part), Zeros(arcs.row, arcs.end, arcs.end_part)]
-    all_zeros = _joined(Zeros, zeros)
+    all_zeros = joined(zeros)
     return (
         arcs._replace(row=rows[arcs.row]),
         near._replace(row=rows[near.row]),

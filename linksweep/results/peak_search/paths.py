@@ -18,12 +18,11 @@ from linksweep.results.peak_search.approaches import (
     Approaches,
     approaches,
     approaches_of_turns,
-    concatenated,
 )
 from linksweep.results.peak_search.friction.contacts import contact_angles
 from linksweep.results.peak_search.groups import Group, crossing
 from linksweep.results.peak_search.limits import graded_samples
-from linksweep.scene.pairs import Array, by_row, in_period
+from linksweep.scene.pairs import Array, by_row, in_period, joined
 
 PER_TURN = 720
 """Even samples of a turn: loads over the angle may vary as quickly as an engine's indicator diagram."""
@@ -225,7 +224,7 @@ def approach_samples(group: Group, angles: Array | None = None) -> Array:
     designs = len(group.designs)
     if not group.scene.approaches():
         return np.empty((designs, 0))
-    close = _approaches(group) if angles is None else approaches(group, angles, joined=False)
+    close = _approaches(group) if angles is None else approaches(group, angles, ends_meet=False)
     return by_row(close.row, close.samples(), designs).reshape(designs, -1)
 
 
@@ -235,7 +234,7 @@ def _approaches(group: Group) -> Approaches:
     if not len(narrow):
         return approaches_of_turns(group)
     graded = approaches(group.some(narrow), _graded_over_period(group.some(narrow)))
-    return concatenated([approaches_of_turns(group), graded._replace(row=narrow[graded.row])])
+    return joined([approaches_of_turns(group), graded._replace(row=narrow[graded.row])])
 
 
 # ------------------------------------------------------------------------------------------------ windows

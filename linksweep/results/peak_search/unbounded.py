@@ -20,7 +20,7 @@ from linksweep.results.peak_search.pieces import (
     designs_without_jams,
     highest_on_pieces,
 )
-from linksweep.scene.pairs import Array
+from linksweep.scene.pairs import Array, some_of
 from linksweep.scene.scene import Scene
 
 PROBES = np.array([1e-4, 1e-5])
@@ -48,7 +48,7 @@ def follow_unbounded(scene: Scene, designs: Array, peaks: dict[str, SignalPeak],
             _put_infinite(group, np.flatnonzero(known & upwards), peaks[signal], arcs, of_signal)
             bounded = np.flatnonzero(known & ~upwards)
             if len(bounded):
-                some = arcs.some(np.flatnonzero((known & ~upwards)[arcs.row]))
+                some = some_of(arcs, np.flatnonzero((known & ~upwards)[arcs.row]))
                 part = group.some(some.row)
                 highest = highest_on_pieces(part, _pieces(part, some), (signal,), HALF, threads)
                 raise_to(peaks[signal], part, highest[signal])
@@ -61,10 +61,6 @@ class Arcs(NamedTuple):
     row: Array
     start: Array
     end: Array
-
-    def some(self, which: Array) -> Arcs:
-        """Return some of the arcs."""
-        return Arcs(*(numbers[which] for numbers in self))
 
 
 def _growth_at_toggles(group: Group, signals: tuple[str, ...], threads: int | None) -> tuple[Arcs, Array]:
