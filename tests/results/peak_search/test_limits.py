@@ -15,7 +15,7 @@ from linksweep.engine.quantity import Limit, Row
 from linksweep.physics.algebra import planar
 from linksweep.results.peak_search.full_turns import Events, full_turns
 from linksweep.results.peak_search.limits import find_limits
-from linksweep.scene.pairs import by_row, quantities_at
+from linksweep.scene.pairs import by_row, quantities_at, some_of
 
 RRR = (Limit("C", ("low", "high"), ("low_noise", "high_noise")),)
 CLOSURES = {
@@ -265,7 +265,8 @@ def test_limits_found_side_by_side_have_the_same_bits_among_any_others_and_inter
         monkeypatch.setattr(laid_out, "INTERPRETED_DESIGNS", most)
         alone = full_turns(scene, scene.table.limits, some)[1]
         for k, design in enumerate(some):
-            for one, other in zip(alone.some(alone.row == k)[1:], every.some(every.row == design)[1:], strict=True):
+            same = some_of(alone, alone.row == k), some_of(every, every.row == design)
+            for one, other in zip(same[0][1:], same[1][1:], strict=True):
                 np.testing.assert_array_equal(one, other)
 
 
