@@ -3,7 +3,7 @@
 All signals of a few designs are evaluated at the samples of the turn. One pass keeps each signal's best summit: the
 sample whose neighbours allow the highest peak. The quartic through five samples about it predicts the peak, and four
 evaluations confirm it. Where they do not, where another summit may be as high, or where signals jump, brackets about
-all summits that may be the highest are refined as in `engine.peaks.search`: those of many designs at once.
+all summits that may be the highest are refined (`engine.peaks.brackets`): those of many designs at once.
 
 `search` is plain Python that is translated to machine code. Arithmetic in lanes is traced and written as vector
 instructions. A design has the same bits whichever others stand beside it, and where nothing is compiled.
