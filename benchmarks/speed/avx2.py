@@ -1,6 +1,6 @@
 """Time the kernel of the nine unknowns against limit.c, both as on a processor that has AVX2 and no AVX-512.
 
-linksweep keeps one kernel of a source, so this takes a process of its own.
+numba and linksweep read the processor's features when they start, so this takes a process of its own.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ def rows(size: Size) -> list[Row]:
         return []
     signs = ("+" if has and not name.startswith("avx512") else "-" for name, has in features.items())
     left = ",".join(map("".join, zip(signs, features, strict=True)))
-    settings = {"LINKSWEEP_CPU_NAME": binding.get_host_cpu_name(), "LINKSWEEP_CPU_FEATURES": left}
+    settings = {"NUMBA_CPU_NAME": binding.get_host_cpu_name(), "NUMBA_CPU_FEATURES": left}
     output = json.loads(fresh.python("-m", __name__, "quick" if size is QUICK else "full", settings=settings))
     timed = Race(output["seconds"], size.angles)
     return [timed.row(SHARE, KERNEL, rival, goal, error=output["error"]) for rival, goal in ((C, 1.05), (WIDE, 1.1))]

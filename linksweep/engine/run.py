@@ -1,6 +1,6 @@
 """Run a plan: by the interpreter while it is small, by its own kernel once that pays; both return equal bits.
 
-A kernel takes 0.1 s to compile, the interpreter 20 µs for a 720-angle cycle. So the first samples of a
+A kernel takes half a second to load and compile, the interpreter 20 µs for a 720-angle cycle. So the first samples of a
 plan are interpreted, and the kernel is compiled once the interpreted work has added up.
 """
 

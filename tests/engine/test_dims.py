@@ -1,6 +1,6 @@
 """Kernels of any number of dims: Python takes twenty blocks within each other; deeper loops are folded into one.
 
-The kernels run here as the Python that they are written in: what is compiled is the same.
+The kernels run here as the Python that they are written in: what numba compiles is the same.
 """
 
 import math

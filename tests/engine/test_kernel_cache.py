@@ -3,8 +3,8 @@
 import errno
 import math
 import os
+import pickle
 import stat
-import struct
 
 import numpy as np
 import pytest
@@ -13,10 +13,9 @@ import linksweep as ls
 from linksweep.base import cache
 from linksweep.engine import run
 from linksweep.engine.kernel import compile as kernels
-from linksweep.engine.kernel import vectors
 from linksweep.engine.trace.plan import plan
 
-SOURCE = "@vectorised\ndef root(x):\n    x[0] = sqrt(1.25 * x[0])\n\n\ndef kernel(x):\n    root(x)\n"
+SOURCE = "import math\n\n\ndef kernel(x):\n    x[0] = math.sqrt(x[0])\n"
 
 
 @pytest.fixture
@@ -30,7 +29,7 @@ def folder(tmp_path, monkeypatch):
 
 def root_of_two() -> float:
     """Compile a kernel, or fetch it from the cache, and run it."""
-    x = np.array([1.6])
+    x = np.array([2.0])
     kernels.compiled(SOURCE, kinds=("f8*",))(x)
     return float(x[0])
 
@@ -54,11 +53,23 @@ def test_a_second_process_finds_the_compiled_kernel(folder):
     assert kept(folder).stat().st_mtime_ns == written
 
 
+def test_kernels_are_compiled_where_numba_is_told_not_to_compile(folder, monkeypatch):
+    """NUMBA_DISABLE_JIT=1 makes a user's own functions plain Python, to be debugged; kernels have no such form."""
+    import numba
+
+    monkeypatch.setattr(numba.config, "DISABLE_JIT", 1)
+    assert root_of_two() == math.sqrt(2)
+    forget()
+    assert root_of_two() == math.sqrt(2)  # from the cache
+    assert numba.njit(root_of_two) is root_of_two and numba.config.DISABLE_JIT == 1
+
+
 DAMAGE = {
     "cut": lambda whole: whole[: len(whole) // 2],
     "empty": lambda whole: b"",
-    "a bit flipped": lambda whole: whole[:499] + bytes([whole[499] ^ 4]) + whole[500:],
+    "a bit flipped": lambda whole: whole[:999] + bytes([whole[999] ^ 4]) + whole[1000:],
     "garbage": lambda whole: b"\xff" * len(whole),
+    "another numba's": lambda whole: cache.hashlib.sha256(pickle.dumps((1, 2))).digest() + pickle.dumps((1, 2)),
 }
 
 
@@ -103,43 +114,52 @@ def test_temporary_files_of_killed_runs_are_swept(folder):
 posix = pytest.mark.skipif(not hasattr(os, "geteuid"), reason="Windows guards the user's folders itself")
 
 
-def plant(folder):
-    """Put another number, its checksum right, into the kept kernel: it returns twice as much."""
+class Trap:
+    """A pickle that leaves a mark where it is run."""
+
+    def __init__(self, mark):
+        self.mark = mark
+
+    def __reduce__(self):
+        return os.mkdir, (str(self.mark),)
+
+
+def plant(folder, mark):
+    """Put a trap, its checksum right, in place of the kept kernel."""
+    content = pickle.dumps(Trap(mark))
     path = kept(folder)
-    own, other = (struct.pack("<d", number) for number in (1.25, 5.0))
-    content = path.read_bytes()[cache.DIGEST :]
-    assert content.count(own) == 1
-    content = content.replace(own, other)
     path.write_bytes(cache.hashlib.sha256(content).digest() + content)
     return path
 
 
 @posix
-def test_a_cache_that_only_the_user_may_write_is_trusted(folder):
-    """The planted number works: tests below that find the root of two do so because it was not read."""
+def test_a_cache_that_only_the_user_may_write_is_trusted(folder, tmp_path):
+    """The trap works: tests below that find no mark do so because it was not read."""
     root_of_two()
-    plant(folder)
+    plant(folder, tmp_path / "mark")
     forget()
-    assert root_of_two() == 2.0 * math.sqrt(2)
+    root_of_two()
+    assert (tmp_path / "mark").exists()
 
 
 @posix
 @pytest.mark.parametrize("who", ["the folder", "the kernel"])
 @pytest.mark.parametrize("mode", [stat.S_IWGRP, stat.S_IWOTH])
-def test_a_cache_that_others_may_write_is_not_read(folder, who, mode):
+def test_a_cache_that_others_may_write_is_not_read(folder, tmp_path, who, mode):
     root_of_two()
-    path = plant(folder)
+    path = plant(folder, tmp_path / "mark")
     written = folder if who == "the folder" else path
     written.chmod(written.stat().st_mode | mode)
     forget()
     assert root_of_two() == math.sqrt(2)
+    assert not (tmp_path / "mark").exists()
 
 
 @posix
 @pytest.mark.parametrize("who", ["the folder", "the kernel", "a link to the folder"])
 def test_a_cache_that_another_user_owns_is_not_read(folder, tmp_path, monkeypatch, who):
     root_of_two()
-    path = plant(folder)
+    path = plant(folder, tmp_path / "mark")
     others = {"the folder": folder, "the kernel": path, "a link to the folder": tmp_path / "link"}[who]
     if not others.exists():
         others.symlink_to(folder)
@@ -148,16 +168,18 @@ def test_a_cache_that_another_user_owns_is_not_read(folder, tmp_path, monkeypatc
     monkeypatch.setattr(cache, "_owned", lambda status: status.st_ino != inode and owned(status))
     forget()
     assert root_of_two() == math.sqrt(2)
+    assert not (tmp_path / "mark").exists()
 
 
 @posix
 def test_a_kernel_that_is_a_link_is_not_read(folder, tmp_path):
     root_of_two()
-    path = plant(folder)
+    path = plant(folder, tmp_path / "mark")
     path.rename(tmp_path / "elsewhere")
     path.symlink_to(tmp_path / "elsewhere")
     forget()
     assert root_of_two() == math.sqrt(2)
+    assert not (tmp_path / "mark").exists()
     assert not path.is_symlink()  # the kernel that was compiled stands there now
 
 
@@ -181,8 +203,8 @@ def test_the_name_covers_all_that_enters_the_kernel(folder, monkeypatch):
     kernel = run.runner(plan(scene.table, ("T12",), scene.inputs.forms), ()).fused.source
     kernels.compiled(kernel, "")
     kernels.compiled(kernel.replace("sqrt(", "1.0 * sqrt("), "")
-    kernels.compiled(kernel, "block")
-    monkeypatch.setattr(vectors, "width", lambda: 4)
+    kernels.compiled(kernel, "import math\n\n\ndef unused():\n    return 1.0\n")
+    monkeypatch.setattr(kernels, "SETTINGS", kernels.SETTINGS | {"boundscheck": False})
     kernels.compiled.cache_clear()
     kernels.compiled(kernel, "")
     assert len(list(folder.glob("kernel_*"))) == 4

@@ -15,7 +15,7 @@ import linksweep as ls
 from benchmarks.cases import ALL, GENERAL, NINE, batch, scene
 from benchmarks.speed.kernel import kernel_of, way
 from linksweep.base import cache
-from linksweep.engine.kernel import compile, machine_code, vectors
+from linksweep.engine.kernel import compile, vectors
 from linksweep.engine.kernel.machine_code import INTEGER
 
 PINS = ("F12", "F32", "F43", "F14")
@@ -50,19 +50,8 @@ def assembly(monkeypatch):
     """Machine code of the one kernel that a call runs, compiled here: a cached one has none to show."""
     monkeypatch.setattr(cache, "cache_folder", lambda: None)
 
-    made: list[str] = []
-    optimised = machine_code._optimised
-
-    def recorded(target, *arguments):
-        module = optimised(target, *arguments)
-        made.append(target.emit_assembly(module))
-        return module
-
-    monkeypatch.setattr(machine_code, "_optimised", recorded)
-
     def of(call) -> str:
-        compile.compiled.__wrapped__(*kernel_of(call).sources)
-        return made[-1]
+        return compile.compiled.__wrapped__(*kernel_of(call).sources).owner._library.get_asm_str()
 
     return of
 
@@ -103,7 +92,7 @@ def test_the_search_for_the_largest_is_packed(assembly):
     """A block of 64 running maxima fills eight registers of AVX-512; a search sample by sample leaves five or fewer."""
     registers = width()
     if pytest.importorskip("llvmlite.binding").llvm_version_info < (20,):
-        pytest.skip("LLVM 15, of llvmlite 0.44, takes the maxima one by one: the same numbers, more slowly")
+        pytest.skip("LLVM 15, of numba 0.61, takes the maxima one by one: the same numbers, more slowly")
     call, *_ = CALLS["peaks"]
     assert len(re.findall(rf"\bvmaxpd\s.*%{registers}", assembly(call))) >= 8
 

@@ -22,8 +22,7 @@ import sys
 import numpy as np
 from linksweep.engine.kernel.compile import compiled
 x = np.array([2.0])
-source = "@vectorised\\ndef root(x):\\n    x[0] = sqrt(x[0])\\n\\n\\ndef kernel(x):\\n    root(x)\\n"
-compiled(source, kinds=("f8*",))(x)
+compiled("from math import sqrt\\n\\n\\ndef kernel(x):\\n    x[0] = sqrt(x[0])\\n", kinds=("f8*",))(x)
 sys.stdout.buffer.write(x.tobytes())
 """
 

@@ -19,7 +19,7 @@ TITLE = "a kept kernel damaged, planted by others or replaced by a folder, link 
 ROUNDS, SMALL = 300, 10
 
 NOBODY = 65534
-SOURCE = "@vectorised\ndef root(x):\n    x[0] = sqrt(x[0])\n\n\ndef kernel(x):\n    root(x)\n"
+SOURCE = "from math import sqrt\n\n\ndef kernel(x):\n    x[0] = sqrt(x[0])\n"
 
 
 def cut(path: Path, random: np.random.Generator) -> None:

@@ -1,5 +1,5 @@
 """Write and compile the kernel of a plan: nested loops over design dims, designs side by side, reductions.
 
-LLVM makes machine code (`machine_code`) of instructions alone, and of what `translate` turns into instructions: the
-kernels of plans (`compile`), the search for peaks, the solver of square systems.
+numba compiles the kernels of plans (`compile`). Instructions alone, and what `translate` turns into instructions (the
+search for peaks, the solver of square systems), become machine code without it (`machine_code`).
 """

@@ -18,7 +18,6 @@ import sys
 from collections.abc import Callable
 from functools import cache, cached_property
 from itertools import count
-from threading import Lock
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -35,9 +34,6 @@ NUMBERS = {"f8": np.dtype(np.float64), "i8": np.dtype(np.int64)}
 HEADER, _integer_at = object.__basicsize__, ctypes.c_int64.from_address
 """The address of an array's memory follows the header that all objects have: numpy's C interface promises so, and
 `array.ctypes` takes ten times as long."""
-
-
-_EMITTING = Lock()
 
 
 class Array(NamedTuple):
@@ -108,21 +104,21 @@ def address(array: np.ndarray) -> int:
     return _integer_at(id(array) + HEADER).value
 
 
-def machine_code(emit: Callable[..., Any], kinds: tuple[str, ...], text: str, *, in_order: bool = False) -> MachineCode:
-    """Return the function whose body `emit` writes: kept machine code, or compiled now, with its instructions left
-    `in_order`. `text` differs wherever the body does."""
+def machine_code(emit: Callable[..., Any], kinds: tuple[str, ...], text: str) -> MachineCode:
+    """Return the function whose body `emit` writes: kept machine code, or compiled now. `text` differs wherever the
+    body does."""
     from llvmlite import binding
 
     binding.initialize_native_target()
     binding.initialize_native_asmprinter()
-    cpu, features = processor()
+    processor, features = _processor(binding)
     triple = binding.Target.from_default_triple()
-    target = triple.create_target_machine(cpu, features, opt=3)
-    made_of = f"{binding.llvm_version_info} {target.triple} {cpu} {features} {SOURCE} {kinds} {text}"
+    target = triple.create_target_machine(processor, features, opt=3)
+    made_of = f"{binding.llvm_version_info} {target.triple} {processor} {features} {SOURCE} {kinds} {text}"
     name = f"{emit.__name__.strip('_')}_{hashlib.sha256(made_of.encode()).hexdigest()[:24]}"
     code = recall(name)
     if code is None:
-        code = _emitted(target, _optimised(target, emit, name, kinds), in_order)
+        code = target.emit_object(_optimised(target, emit, name, kinds))
         keep(name, code)
     engine = binding.create_mcjit_compiler(binding.parse_assembly(""), target)
     engine.add_object_file(binding.ObjectFileRef.from_data(code))
@@ -130,13 +126,10 @@ def machine_code(emit: Callable[..., Any], kinds: tuple[str, ...], text: str, *,
     return MachineCode(engine, engine.get_function_address(name), kinds)
 
 
-def processor() -> tuple[str, str]:
-    """Return the processor to compile for and its features: this one, or the one that LINKSWEEP_CPU_NAME and
-    LINKSWEEP_CPU_FEATURES name."""
-    from llvmlite import binding
-
-    if name := os.environ.get("LINKSWEEP_CPU_NAME"):
-        return name, os.environ.get("LINKSWEEP_CPU_FEATURES", "")
+def _processor(binding: Any) -> tuple[str, str]:
+    """Return the processor to compile for and its features: this one, or the one that numba's settings name."""
+    if name := os.environ.get("NUMBA_CPU_NAME"):
+        return name, os.environ.get("NUMBA_CPU_FEATURES", "")
     return binding.get_host_cpu_name(), binding.get_host_cpu_features().flatten()
 
 
@@ -165,21 +158,6 @@ def _optimised(target: Any, emit: Callable[..., Any], name: str, kinds: tuple[st
     passes = binding.create_pass_builder(target, tuning)
     passes.getModulePassManager().run(module, passes)
     return module
-
-
-def _emitted(target: Any, module: Any, in_order: bool) -> bytes:
-    """Return a module's machine code. Whether LLVM leaves instructions in the order in which they are written is set
-    for the whole process."""
-    from llvmlite import binding
-
-    with _EMITTING:
-        if not in_order:
-            return target.emit_object(module)
-        binding.set_option("", "-enable-misched=false")
-        try:
-            return target.emit_object(module)
-        finally:
-            binding.set_option("", "-enable-misched=true")
 
 
 def new_function(module: Any, emit: Callable[..., Any], name: str, kinds: tuple[str, ...]) -> Any:

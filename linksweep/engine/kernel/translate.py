@@ -113,13 +113,13 @@ class Translator(Values):
         return self.frames[-1]
 
     def of_call(self, function: Any, arguments: Any) -> Any:
-        """Translate a call, and return what it returns. A function without a file has its syntax as `definition`."""
-        definition: Any = getattr(function, "definition", None) or ast.parse(inspect.getsource(function)).body[0]
+        """Translate a call, and return what it returns."""
+        (definition,) = ast.parse(inspect.getsource(function)).body
         frame = Frame(function, {}, self.builder.append_basic_block(), [])
         self.frames.append(frame)
-        for parameter, value in zip(definition.args.args, arguments, strict=True):
+        for parameter, value in zip(definition.args.args, arguments, strict=True):  # type: ignore[attr-defined]
             self._assign_name(parameter.arg, value)
-        self._statements(definition.body)
+        self._statements(definition.body)  # type: ignore[attr-defined]
         self._go(frame.end)
         self.builder.position_at_end(frame.end)
         self.frames.pop()

@@ -62,7 +62,7 @@ from typing import Any
 from linksweep.engine.kernel import instructions, reduce, running, translate
 from linksweep.engine.kernel.ahead import longest_chains_first
 from linksweep.engine.kernel.instructions import REGISTER, Instructions
-from linksweep.engine.kernel.machine_code import ROW, Array, new_function, processor, write_call
+from linksweep.engine.kernel.machine_code import ROW, Array, new_function, write_call
 
 LANES = 2 * REGISTER
 """Samples side by side on processors with the widest registers; the least length of a row."""
@@ -79,15 +79,17 @@ SOURCE = inspect.getsource(sys.modules[__name__]) + "".join(
 
 
 def width() -> int:
-    """Return how many samples the processor takes side by side: two registers of them, as one alone would wait for the
-    results of its own operations."""
-    features = processor()[1].split(",")
+    """Return how many samples the processor that numba compiles for takes side by side: two registers of them, as one
+    alone would wait for the results of its own operations."""
+    from numba.core.registry import cpu_target
+
+    features = cpu_target.target_context.codegen().magic_tuple()[2].split(",")
     return 16 if "+avx512f" in features else 8 if "+avx" in features else 4
 
 
-def vectorised(function: FunctionType, streamed: str = "") -> Callable:
-    """Let calls of a function, where they are translated, be written as instructions; rows of the array that is
-    `streamed` are stored past the caches."""
+def intrinsic(function: FunctionType, streamed: str = "") -> Callable:
+    """Return a function as instructions that numba puts in place of its calls; rows of the array that is `streamed` are
+    stored past the caches."""
     names = list(inspect.signature(function).parameters)
 
     def emit(builder: Any, *arguments: Any) -> None:
@@ -96,8 +98,7 @@ def vectorised(function: FunctionType, streamed: str = "") -> Callable:
         values = [writer.argument(x, lengths.get(name), name == streamed) for name, x in passed.items()]
         FunctionType(function.__code__, writer.names())(*values)
 
-    vars(function)["emit"] = emit
-    return function
+    return instructions.intrinsic(emit, names)
 
 
 def _align_stack(function: Any) -> None:
@@ -231,7 +232,7 @@ class _Writer:
         return {"math": math, "number": self.number, "running": self.running} | loops | operations | summaries
 
     def argument(self, llvm: Any, length: Any, streamed: bool) -> _Value | _Array:
-        return _Array(self, llvm.data, length, streamed) if isinstance(llvm, Array) else _Value(self, llvm)
+        return _Array(self, llvm, length, streamed) if llvm.type.is_pointer else _Value(self, llvm)
 
     # ------------------------------------------------------------------------------------------ loops
 
