@@ -48,6 +48,9 @@ NARROWEST = 0.02
 """Width of a near-toggle below which a design has many samples on each of its pieces."""
 NARROW = 0.5
 """Width of a near-toggle, as tangent of half the angle, below which pieces end at it."""
+NEAR_END = 1e-4
+"""Share of a piece from its end to the place where the direction of sliding is that near the end: a slide that moves by
+less than rounding elsewhere does move near a near-toggle."""
 BORDERS = np.array([90.0, 270.0])
 """Ends of half turns, from the near-toggle [degree]."""
 BEYOND = 30.0
@@ -177,12 +180,25 @@ def _pieces(group: Group, half: int, threads: int | None) -> Pieces:
 
 
 def _directions(group: Group, pieces: Pieces, threads: int | None) -> Array:
-    """Return the directions of sliding (direction, design, piece), those in the middle of each piece."""
-    scene, names = group.scene, group.scene.mechanism.directions()
-    shape = len(pieces.counts), pieces.start.shape[1]
+    """Return the directions of sliding (direction, design, piece): those near the narrower near-toggle at an end of
+    each piece, or in its middle."""
+    names, shape = group.scene.mechanism.directions(), (len(pieces.counts), pieces.start.shape[1])
     if not names:
         return np.empty((0, *shape))
-    places = {TANGENT: pieces.tangents(0.5 * (pieces.start + pieces.end)), FAR: pieces.half}
+    start, end = map(pieces.tangents, (pieces.start, pieces.end))
+    at_start, at_end = _widths(pieces, start, end, *group.near_toggles())
+    near_end = np.where(at_end < at_start, 1.0 - NEAR_END, NEAR_END)
+    directions = _directions_at(group, pieces, np.where(np.minimum(at_start, at_end) < 1.0, near_end, 0.5), threads)
+    if (directions == 0.0).any():
+        directions = np.where(directions == 0.0, _directions_at(group, pieces, np.array([[0.5]]), threads), directions)
+    return directions
+
+
+def _directions_at(group: Group, pieces: Pieces, share: Array, threads: int | None) -> Array:
+    """Return the directions of sliding (direction, design, piece) at a share of the way along each piece."""
+    scene, shape = group.scene, (len(pieces.counts), pieces.start.shape[1])
+    names, angle = scene.mechanism.directions(), pieces.start + share * (pieces.end - pieces.start)
+    places = {TANGENT: pieces.tangents(angle), FAR: pieces.half}
     own = {name: _of_pieces(values) for name, values in places.items()}
     request, inputs = group.one_by_one(scene.table.between_samples, names, np.arange(shape[0]), own, ())
     values = evaluate(request, inputs, scene.grid(1), dict(zip((ONE, PIECE), shape, strict=True)), threads)

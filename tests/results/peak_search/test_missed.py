@@ -36,6 +36,8 @@ def test_a_peak_at_once_after_the_start_of_a_piece_is_found():
         ("Watt six-bar", 220_000, 9453),  # a near-toggle just beyond the end of a half turn
         ("Watt six-bar", 400_000, 1148),  # two near-toggles, 7° apart, of which the samples show one
         ("Watt six-bar", 440_000, 4866),  # two near-toggles between two samples
+        ("knuckle-joint press with friction", 150_000, 696),  # a ram that moves by nanometres: rounding hides where
+        ("knuckle-joint press with friction", 610_000, 7910),  # it slides, but near the near-toggle
     ],
 )
 def test_designs_that_were_missed_are_no_more(name, part, design):
