@@ -172,14 +172,6 @@ def newton_euler_equations(k: int, pins: dict[str, tuple[float, str]], torque: s
     ]
 
 
-def arm_rows(k: int, first: str, second: str | None = None) -> list[Row | Total]:
-    """Return rows of the arms from the centre of gravity of link k to its first pin and, if named, its second."""
-    ends: dict[str, tuple[Source, Source]] = {first: (0.0, 0.0)}
-    if second:
-        ends[second] = (f"r{k}x", f"r{k}y")
-    return [Row(planar.difference, (f"{arm}x", f"{arm}y"), (*end, f"rG{k}x", f"rG{k}y")) for arm, end in ends.items()]
-
-
 def pin_force_rows(i: int, j: int) -> list[Row | Total]:
     """Return rows of the magnitude of the force of link i on link j, and of the reaction, from its components."""
     force, back = force_name(i, j), force_name(j, i)

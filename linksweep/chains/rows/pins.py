@@ -57,7 +57,7 @@ def pin_quantities(pins: Pins, links: Mapping[int, str]) -> list[Quantity]:
 def _arm_quantities(pin: str, link: int, other: int, links: Mapping[int, str]) -> list[Quantity]:
     """Return the vector of document 2 (ME 470) from a link's centre of gravity to a pin, named after both links there.
 
-    Its rows are `linksweep.chains.rows.bodies.arm_rows`.
+    Its rows are `linksweep.chains.equations.arm_rows`.
     """
     vector = f"vector from the centre of gravity of link {link} ({links[link]}) to its pin {pin} with link {other}"
     axes = {"x": "along x (positive to the right)", "y": "along y (positive upwards)"}.items()

@@ -146,14 +146,17 @@ def test_evaluators_have_the_same_bits_compiled_and_interpreted(one_geometry):
 
 def test_numbers_that_designs_share_are_the_same_as_their_own():
     """Compiled for the same operations, but for parameters of other dims."""
-    own = four_bars(50)
-    same = replace(own, omega2=xr.DataArray(np.full(50, 30.0), dims="design"))
-    twice = replace(own, omega2=xr.DataArray([30.0, 30.0], dims="speed"))
-    peaks = [ls.peaks(scene, of=["F32", "T12"]).drop_vars("omega2", errors="ignore") for scene in (own, same, twice)]
-    peaks = [one.drop_attrs() for one in peaks]
-    xr.testing.assert_identical(peaks[0], peaks[1])
-    for speed in range(2):
-        xr.testing.assert_identical(peaks[0], peaks[2].isel(speed=speed))
+    slow = four_bars(50)
+    fast = replace(slow, omega2=40.0)
+    mixed = replace(slow, omega2=xr.DataArray(np.tile([30.0, 40.0], 25), dims="design"))
+    both = replace(slow, omega2=xr.DataArray([30.0, 40.0], dims="speed"))
+    peaks = [ls.peaks(scene, of=["F32", "T12"]).drop_vars("omega2", errors="ignore") for scene in (slow, fast, mixed)]
+    *shared, own = (one.drop_attrs() for one in peaks)
+    of_both = ls.peaks(both, of=["F32", "T12"]).drop_vars("omega2").drop_attrs()
+    for speed, alone in enumerate(shared):
+        every_other = {"design": slice(speed, None, 2)}
+        xr.testing.assert_identical(own.isel(every_other), alone.isel(every_other))
+        xr.testing.assert_identical(of_both.isel(speed=speed), alone)
 
 
 def test_designs_on_one_geometry_have_the_bits_of_those_on_equal_ones():
