@@ -32,11 +32,6 @@ STATIC_FACTORS = (
 """Rows (γ, f0)."""
 
 
-def required_rating(equivalent_load: Number, revolutions: Number, exponent: Number) -> Number:
-    """Return the basic dynamic load rating for a life in millions of revolutions."""
-    return equivalent_load * revolutions ** (1.0 / exponent)
-
-
 def dynamic_rating(ball: Number, pitch: Number, balls: int) -> Number:
     """Return the basic dynamic load rating C [N] from the diameters of ball and pitch circle [mm]."""
     return RATING_FACTOR * _between(DYNAMIC_FACTORS, ball / pitch) * balls ** (2.0 / 3.0) * ball**1.8
