@@ -109,7 +109,7 @@ def test_a_link_that_turns_fully_has_nothing_of_its_travel():
 @pytest.mark.parametrize("lengths", [(0.1, 0.3, 0.1, 0.3), (0.1, 0.1, 0.3, 0.3), (0.3, 0.1, 0.1, 0.3)])
 @pytest.mark.parametrize("branch", ["open", "crossed"])
 def test_a_rocker_that_passes_change_points_does_not_turn_round_where_closed_forms_say(lengths, branch):
-    """That of a parallelogram never does; that of a kite swings to both sides of the frame, or stands still."""
+    """A parallelogram's rocker never does; a kite's swings to both sides of the frame, or stands still."""
     geometry = ls.geometry(four_bar(*lengths, branch=branch))
     assert np.isnan([geometry.swing, geometry.time_ratio, *geometry.reversal_angle]).all()
 
