@@ -22,7 +22,6 @@ from linksweep.chains.finding import Finding, turning_round
 from linksweep.chains.rows.bodies import (
     CRANK,
     Body,
-    arm_rows,
     crank_pin_rows,
     drive_quantities,
     drive_torque,
@@ -175,8 +174,9 @@ def table(loads):
         Row(planar.opposite, ("T12",), ("work",)),
         *power_rows("T12", "omega2", (CRANK, YOKE), loads),
         *machine_rows((CRANK, YOKE), PINS, loads),
-        *arm_rows(2, "R12", "R42"),
-        *arm_rows(4, "R14"),
+        Row(planar.difference, ("R12x", "R12y"), (0.0, 0.0, "rG2x", "rG2y")),
+        Row(planar.difference, ("R42x", "R42y"), ("r2x", "r2y", "rG2x", "rG2y")),
+        Row(planar.difference, ("R14x", "R14y"), (0.0, 0.0, "rG4x", "rG4y")),
         Row(planar.difference, ("R24x", "R24y"), (0.0, "r2y", "rG4x", "rG4y")),
         Row(planar.identity, ("velocity_ratio",), ("ratio_yoke",)),
     ]
