@@ -31,7 +31,7 @@ and −1 times that of a flat place."""
 EVENT_ROWS = 4
 MOST = 24
 """Events of a design, dips that are refined, and zeros, at most."""
-ONE = 1e-10
+SAME_ZERO = 1e-10
 """Distance of two zeros that are one."""
 NOISE_SHARE = 0.04
 """Noise of a sample, in units of that which its distance from zero allows for."""
@@ -85,14 +85,17 @@ def noise(samples, j, signal, signals):
 
 
 def note(results, owner, tangent, half, signal, width):
-    """Note an event of a design after those that are known, on the half turn that has its place; a zero once, that of a
-    dip at the end of a piece may be known from the next piece."""
+    """Note an event of a design after those that are known, on the half turn that has its place.
+
+    A zero is noted once: that of a dip at the end of a piece may be known from the next piece.
+    """
     (events, left), nth, known = results, 0, False
     if tangent < ENDS[0] or tangent > BORDER:
         tangent, half = -1.0 / tangent, 1.0 - half
     while nth < MOST and events[PLACE, owner, nth] == events[PLACE, owner, nth]:
         if width == 0.0 and events[HALF_WIDTH, owner, nth] == 0.0 and events[NUMBER, owner, nth] == signal:
-            known = known or (events[HALF_TURN, owner, nth] == half and abs(events[PLACE, owner, nth] - tangent) < ONE)
+            away = abs(events[PLACE, owner, nth] - tangent)
+            known = known or (events[HALF_TURN, owner, nth] == half and away < SAME_ZERO)
         nth += 1
     if nth == MOST and not known:
         left[owner] = 1.0
