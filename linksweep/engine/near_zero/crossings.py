@@ -30,15 +30,16 @@ FLAT = 1e-3
 
 
 def look_for_crossings(samples, half, signal, signals, crossings, counts, owner, results):
-    """Open brackets of a signal's zeros on a piece, and note flat places; what may be noise counts as positive."""
+    """Open brackets of a signal's zeros on a piece, and note flat places; what may be noise counts as positive, and so
+    does a sample without a value, which no bracket spans."""
     places, was_negative = samples[2], is_negative(samples, BEYOND, signal, signals)
     for j in range(BEYOND + 1, places - BEYOND):
         negative = is_negative(samples, j, signal, signals)
         if negative != was_negative:
             i, k = j - 1, j
-            while i > 0 and not is_clear(samples, i, signal, signals):
+            while i > 0 and may_be_noise(samples, i, signal, signals):
                 i -= 1
-            while k < places - 1 and not is_clear(samples, k, signal, signals):
+            while k < places - 1 and may_be_noise(samples, k, signal, signals):
                 k += 1
             f_i, f_k = sample(samples, i, signal), sample(samples, k, signal)
             if f_i * f_k < 0.0:
@@ -59,6 +60,11 @@ def is_negative(samples, j, signal, signals):
 def is_clear(samples, j, signal, signals):
     """Return whether a sample of a signal is clear of zero, by the third of its signals."""
     return sample(samples, j, signal + 2 * signals) > 0.0
+
+
+def may_be_noise(samples, j, signal, signals):
+    """Return whether a sample of a signal has a value that is not clear of zero."""
+    return sample(samples, j, signal + 2 * signals) <= 0.0
 
 
 def open_crossing(crossings, counts, lanes, lane, bracket, half, signal, owner, results):

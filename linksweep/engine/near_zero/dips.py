@@ -33,8 +33,8 @@ from linksweep.engine.peaks.brackets import (
 from linksweep.engine.peaks.lanewise import lanewise
 
 TOGGLE, BOUND, JUMP = 0.0, 1.0, 2.0
-"""Kinds of signals: those that stay positive, or the design is left; those whose dips and zeros are sought; and those
-whose zeros alone are."""
+"""Kinds of signals: those whose zeros are sought, and dips on their positive side, where a machine closes; those whose
+zeros and dips are sought on both sides; and those whose zeros alone are."""
 WIDEST = math.tan(0.3)
 """Half-width from which on a dip is as smooth as the motion of the links."""
 UNLIKE = 4.0
@@ -57,9 +57,8 @@ def look_for_dips(samples, half, signal, signals, kind, dips, counts, owner, res
     before, here = sample(samples, BEYOND - 1, signal), sample(samples, BEYOND, signal)
     for j in range(BEYOND, places - BEYOND):
         after = sample(samples, j + 1, signal)
-        if kind == TOGGLE and not here > 0.0:
-            results[1][owner] = 1.0
         side = 1.0 if here > 0.0 else -1.0
+        sought = JUMP if kind == TOGGLE and side < 0.0 else kind
         if side * here <= side * before and side * here < side * after:
             higher, i, k = side * here + noise(samples, j, signal, signals), j - 1, j + 1
             while i > 0 and side * sample(samples, i, signal) <= higher:
@@ -68,7 +67,7 @@ def look_for_dips(samples, half, signal, signals, kind, dips, counts, owner, res
                 k += 1
             a, b, c = place(samples, i), place(samples, j), place(samples, k)
             f_a, f_b, f_c = side * sample(samples, i, signal), side * here, side * sample(samples, k, signal)
-            if f_a > higher and f_c > higher and may_matter(a, f_a, b, f_b, c, f_c, kind):
+            if f_a > higher and f_c > higher and may_matter(a, f_a, b, f_b, c, f_c, sought):
                 number = float(signal + signals) if side > 0.0 else float(signal)  # dips are peaks of opposites
                 bracket = (a, -f_a), (b, -f_b), (c, -f_c)
                 open_dip(dips, counts, samples[4], samples[5], bracket, half, number, signal, owner, results)
@@ -128,17 +127,17 @@ def check_noise(dips, counts, lanes, signals, own, evaluate, front, results):
 
 
 def open_sides(dips, counts, lanes, signals, kinds, crossings, crossed, front, results):
-    """Open brackets of the zeros on both sides of dips beyond zero; the others count, but those of jumps."""
+    """Open brackets of the zeros on both sides of dips beyond zero; the others count, but those of jumps, and those of
+    toggles where the machine does not close."""
     for lane in range(lanes):
         for nth in range(int(counts[lane])):
             k, owner = nth * lanes + lane, front + lane
             top, f_top, signal, half = dips[TOP, k], dips[F_TOP, k], dips[OWN, k], dips[FAR, k]
             kind, new = kinds[int(signal)], not is_known(dips, nth, lanes, lane)
-            dips[COUNTS, k] = 1.0 if new and f_top <= 0.0 and kind != JUMP else 0.0
-            if new and f_top > 0.0 and kind == TOGGLE:
-                results[1][owner] = 1.0
-            if new and f_top > 0.0 and kind != TOGGLE:
-                sign = -1.0 if dips[SIGNAL, k] >= signals else 1.0
+            sign = -1.0 if dips[SIGNAL, k] >= signals else 1.0
+            matters = kind == BOUND or (kind == TOGGLE and sign < 0.0)
+            dips[COUNTS, k] = 1.0 if new and f_top <= 0.0 and matters else 0.0
+            if new and f_top > 0.0:
                 for end, at_end in ((dips[A, k], dips[F_A, k]), (dips[C, k], dips[F_C, k])):
                     bracket = top, sign * f_top, end, sign * at_end
                     open_crossing(crossings, crossed, lanes, lane, bracket, half, signal, owner, results)
@@ -190,7 +189,9 @@ def place_beside(top, width):
 @lanewise((F_TOP, F1, F2, BROAD, LAST, STEEP), (BROAD, LAST, STEEP))
 def measure_width(f_top, before, after, width, last, last_steep):
     """Return the half-width at which the signal has twice its least value, by the steepness of the rise to the trials
-    and to those before: it is taken as linear in the width, 0 at first, as that of a parabola."""
+    and to those before: it is taken as linear in the width, 0 at first, as that of a parabola. A trial beyond a toggle
+    has no value."""
+    before, after = (before < math.inf).where(before, after), (after < math.inf).where(after, before)
     depth, steep = -f_top, (f_top - 0.5 * (before + after)) / width
     bend = (steep - last_steep) / (width - last)
     start = steep - bend * width

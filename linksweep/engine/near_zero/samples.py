@@ -24,7 +24,10 @@ FAR_HALF = BORDER + 1.0 / BORDER
 ENDS = (-1.0 / BORDER, BORDER, FAR_HALF + BORDER)
 """Places of the ends of half turns."""
 END, END_WIDTH = range(2)
-"""Rows of ends of pieces (row, design, nth), in order: their places, and the half-widths of near-toggles there."""
+"""Rows of ends of pieces (row, design, nth), in order: their places, and the half-widths of near-toggles there, 0 of
+toggles."""
+INSIDE = 1e-11
+"""Distance of the first sample of a piece from a toggle at its end, relative to half of its length."""
 PLACE, HALF_TURN, NUMBER, HALF_WIDTH = range(4)
 """Rows of events (row, design, nth): tangent, half turn and number of the signal; half-width of a dip, 0 of a zero,
 and −1 times that of a flat place."""
@@ -50,6 +53,10 @@ def place_samples(ends, owner, nth, lanes, lane, places, grades, x):
         x[(BEYOND + k) * lanes + lane] = start + reach * grades[near, k]
     for k in range(steps + 1):
         x[(places - 1 - BEYOND - k) * lanes + lane] = end - reach * grades[far, k]
+    if ends[END_WIDTH, owner, nth] == 0.0:
+        x[BEYOND * lanes + lane] = start + reach * INSIDE
+    if ends[END_WIDTH, owner, nth + 1] == 0.0:
+        x[(places - 1 - BEYOND) * lanes + lane] = end - reach * INSIDE
     for k, step in ((0, FARTHER), (1, 1)):
         x[k * lanes + lane] = start - reach * grades[near, step]
         x[(places - 1 - k) * lanes + lane] = end + reach * grades[far, step]

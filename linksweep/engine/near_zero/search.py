@@ -8,7 +8,7 @@ opened about dips (`dips.py`) and zeros (`crossings.py`), which are then refined
 
 from linksweep.engine.kernel.instructions import call
 from linksweep.engine.near_zero.crossings import find_zeros, look_for_crossings
-from linksweep.engine.near_zero.dips import TOGGLE, check_noise, look_for_dips, measure_widths, open_sides, refine_dips
+from linksweep.engine.near_zero.dips import check_noise, look_for_dips, measure_widths, open_sides, refine_dips
 from linksweep.engine.near_zero.samples import END, place_samples
 
 
@@ -41,8 +41,7 @@ def find_near_zero(
                         for signal in range(signals):
                             kind, owner = kinds[signal], front + lane
                             look_for_dips(samples, half, signal, signals, kind, dips, dipped, owner, results)
-                            if kind != TOGGLE:
-                                look_for_crossings(samples, half, signal, signals, crossings, crossed, owner, results)
+                            look_for_crossings(samples, half, signal, signals, crossings, crossed, owner, results)
         refine_dips(dips, dipped, lanes, own, evaluate)
         check_noise(dips, dipped, lanes, signals, own, evaluate, front, results)
         open_sides(dips, dipped, lanes, signals, kinds, crossings, crossed, front, results)

@@ -24,7 +24,7 @@ from linksweep.engine.trace.plan import plan
 from linksweep.results.compute import compute, zeros_of
 from linksweep.results.peak_search.between import EVERYWHERE, NEVER, PARTLY
 from linksweep.results.peak_search.curves import SEAM, WIDE, Curves, Extremes, parabola, zeros_and_extremes
-from linksweep.results.peak_search.full_turns import full_turns
+from linksweep.results.peak_search.side_by_side import close_at, search_side_by_side
 from linksweep.scene.pairs import Array, by_row, different_designs, in_period, joined, some_of
 from linksweep.scene.scene import Scene
 
@@ -127,17 +127,34 @@ def signals_of(limits: tuple[Limit, ...]) -> tuple[str, ...]:
 
 def find_limits(scene: Scene, limits: tuple[Limit, ...], designs: Array) -> Limits:
     """Search the limits of these designs of a mechanism alone, whose period is that of its motion."""
-    whole, events, angle = full_turns(scene, limits, designs)
-    zero, none = np.zeros(len(whole)), np.full(len(whole), NO_TOGGLE)
-    arcs = Arcs(whole, zero, zero + scene.period, none, none)
+    rows, events, angle = search_side_by_side(scene, limits, designs)
+    zeros = Zeros(events.row, angle, events.part)
+    toggle = (events.width == 0.0) & np.array([limit.zeros == "toggle" for limit in limits] or [False])[events.part]
+    arcs = _closed(scene, limits, designs, rows, some_of(zeros, toggle))
     near = some_of(NearToggles(events.row, angle, events.width), events.width > 0.0)
-    some = [(arcs, near, some_of(Zeros(events.row, angle, events.part), events.width == 0.0))]
-    others = np.setdiff1d(np.arange(len(designs)), whole, assume_unique=True)
+    some = [(arcs, near, some_of(zeros, (events.width == 0.0) & ~toggle))]
+    others = np.setdiff1d(np.arange(len(designs)), rows, assume_unique=True)
     step = max(1, AT_ONCE // round(scene.period / scene.mechanism.period))
     some += [_search(scene, limits, designs, others[k : k + step]) for k in range(0, len(others), step)]
-    arcs, near, zeros = zip(*some, strict=True)
-    tables = joined(arcs), joined(near), joined(zeros)
-    return _tables(*tables, len(designs), len(limits), scene.period)
+    arcs, near, zeros = map(joined, zip(*some, strict=True))
+    zeros = joined([zeros, Zeros(arcs.row, arcs.start, arcs.start_part), Zeros(arcs.row, arcs.end, arcs.end_part)])
+    return _tables(arcs, near, zeros, len(designs), len(limits), scene.period)
+
+
+def _closed(scene: Scene, limits: tuple[Limit, ...], designs: Array, rows: Array, toggles: Zeros) -> Arcs:
+    """Return the arcs between toggles, or whole turns, on which the designs in these rows close: there all signals are
+    positive but for noise."""
+    period, turning = scene.period, np.setdiff1d(rows, toggles.row)
+    row, start, part = some_of(toggles, np.lexsort((in_period(toggles.angle, period), toggles.row)))
+    start = in_period(start, period)
+    first = np.flatnonzero(np.diff(row, prepend=-1))
+    last = np.append(first[1:], len(row))[: len(first)] - 1
+    end, end_part = np.roll(start, -1), np.roll(part, -1)
+    end[last], end_part[last] = start[first] + period, part[first]
+    zero, none = np.zeros(len(turning)), np.full(len(turning), NO_TOGGLE)
+    arcs = joined([Arcs(turning, zero, zero + period, none, none), Arcs(row, start, end, part, end_part)])
+    arcs = some_of(arcs, arcs.end - arcs.start > SHORTEST)
+    return some_of(arcs, close_at(scene, limits, designs[arcs.row], 0.5 * (arcs.start + arcs.end)))
 
 
 def _tables(arcs: Arcs, near: NearToggles, zeros: Zeros, designs: int, parts: int, period: float) -> Limits:
@@ -179,13 +196,8 @@ def _search(scene: Scene, limits: tuple[Limit, ...], every: Array, rows: Array) 
             pieces.append(_pieces(curves, own, crossed, part) if limit.zeros == "toggle" else own)
             zeros += [touched] if limit.zeros == "toggle" else [touched, crossed._replace(row=own.row[crossed.row])]
         arcs, near = joined(pieces), joined(known)
-    zeros += [Zeros(arcs.row, arcs.start, arcs.start_part), Zeros(arcs.row, arcs.end, arcs.end_part)]
-    all_zeros = joined(zeros)
-    return (
-        arcs._replace(row=rows[arcs.row]),
-        near._replace(row=rows[near.row]),
-        all_zeros._replace(row=rows[all_zeros.row]),
-    )
+    met = joined(zeros)
+    return arcs._replace(row=rows[arcs.row]), near._replace(row=rows[near.row]), met._replace(row=rows[met.row])
 
 
 def _zeros(curves: Curves, arcs: Arcs, part: int) -> tuple[Zeros, Zeros, NearToggles]:

@@ -25,10 +25,10 @@ from linksweep.physics.algebra import planar
 from linksweep.physics.closures import crank_angle
 from linksweep.results.peak_search.along_paths import SignalPeak, angle_in_period, put
 from linksweep.results.peak_search.between import EVERYWHERE, ONE
-from linksweep.results.peak_search.full_turns import FASTEST
 from linksweep.results.peak_search.groups import Group, all_at_once, groups
 from linksweep.results.peak_search.paths import distinct
 from linksweep.results.peak_search.poles import singular_angles
+from linksweep.results.peak_search.side_by_side import FASTEST
 from linksweep.scene.curves.polynomials import Polynomials, polynomials
 from linksweep.scene.dimensions import aligned
 from linksweep.scene.pairs import Array, by_row, places_of

@@ -73,7 +73,7 @@ def test_one_narrow_dip_and_its_half_width(middle, cut):
 
 
 @pytest.mark.parametrize("middle", ANGLES)
-@pytest.mark.parametrize("kind", [dips.BOUND, dips.JUMP])
+@pytest.mark.parametrize("kind", [dips.TOGGLE, dips.BOUND, dips.JUMP])
 def test_both_zeros_beside_a_dip_that_lies_between_samples(middle, kind):
     for depth, cuts in ((1e-6, []), (1e-6, [(middle, 1e-3)]), (0.5, [(middle, 1e-5)])):
         angles, widths, left = near_zero(lambda angle, depth=depth: 1.0 - np.cos(angle - middle) - depth, kind, cuts)
@@ -145,6 +145,24 @@ def test_rounding_makes_no_dips():
     assert len(angles) <= 2 and not left
 
 
-@pytest.mark.parametrize("least", [-1e-3, -1e-12, 1e-14])
-def test_designs_that_do_not_stay_clear_are_left(least):
+@pytest.mark.parametrize("least", [-1e-14, 0.0, 1e-14])
+def test_designs_that_touch_zero_but_for_noise_are_left(least):
     assert near_zero(lambda angle: least + np.sin(0.5 * (angle - 1.0)) ** 2, dips.TOGGLE)[2]
+
+
+def test_a_dip_where_the_machine_does_not_close_is_no_near_toggle():
+    angles, _, left = near_zero(lambda angle: -1e-6 - np.sin(0.5 * (angle - 1.0)) ** 2, dips.TOGGLE)
+    assert not len(angles) and not left
+
+
+def test_what_ends_at_a_toggle_is_found_up_to_there():
+    """Beyond a toggle at 1 rad another part varies as the root of the angle from there: its zero lies close to it."""
+    for away in (1e-9, 1e-6, 1e-3, 0.5):
+
+        def height(angle, away=away):
+            return np.sqrt(np.sin(0.5 * (angle - 1.0))) - np.sqrt(np.sin(0.5 * away))
+
+        angles, widths, left = near_zero(height, dips.TOGGLE, [(1.0, 0.0)])
+        near = angles[np.abs(angles - 1.0) < 1.0]
+        np.testing.assert_allclose(near - 1.0, away, rtol=1e-5)
+        assert len(near) == 1 and not left and (widths == 0.0).all()

@@ -13,8 +13,8 @@ from benchmarks.accuracy import missed
 from linksweep.engine.peaks import laid_out
 from linksweep.engine.quantity import Limit, Row
 from linksweep.physics.algebra import planar
-from linksweep.results.peak_search.full_turns import Events, full_turns
 from linksweep.results.peak_search.limits import find_limits
+from linksweep.results.peak_search.side_by_side import Events, search_side_by_side
 from linksweep.scene.pairs import by_row, quantities_at, some_of
 
 RRR = (Limit("C", ("low", "high"), ("low_noise", "high_noise")),)
@@ -215,7 +215,10 @@ def presses_near_toggles():
 
 SIDE_BY_SIDE = {
     "presses": lambda: linkages("knuckle-press", 4.0),
-    "six-bars": lambda: linkages("watt-2", 1.3),
+    "six-bars": lambda: linkages("watt-2", 3.0),
+    "legs of two dyads": lambda: linkages("klann-leg", 3.0),
+    "legs of three dyads": lambda: linkages("jansen-leg", 2.5),
+    "wipers": lambda: linkages("wipers", 3.0),
     "presses near toggles": presses_near_toggles,
     "six-bars near toggles": six_bars_near_toggles,
 }
@@ -224,20 +227,23 @@ SIDE_BY_SIDE = {
 @pytest.mark.parametrize("name", SIDE_BY_SIDE)
 def test_limits_found_side_by_side_are_those_of_the_search_of_arcs(name, monkeypatch):
     scene, designs = SIDE_BY_SIDE[name](), np.arange(150)
-    by_both, rows = find_limits(scene, scene.table.limits, designs), full_turns(scene, scene.table.limits, designs)[0]
+    by_both, rows = (
+        find_limits(scene, scene.table.limits, designs),
+        search_side_by_side(scene, scene.table.limits, designs)[0],
+    )
     nothing = Events(*(np.empty(0, dtype=kind) for kind in (int, float, int, float)))
     monkeypatch.setattr(
-        "linksweep.results.peak_search.limits.full_turns", lambda *_: (designs[:0], nothing, nothing.place)
+        "linksweep.results.peak_search.limits.search_side_by_side", lambda *_: (designs[:0], nothing, nothing.place)
     )
     searched = find_limits(scene, scene.table.limits, designs)
     np.testing.assert_array_equal(by_both.assembly, searched.assembly)
+    assert len(rows) > 147
     turning = np.flatnonzero(searched.assembly == 0.0)
-    assert len(rows) > 60 and np.isin(rows, turning).all() and len(rows) > 0.98 * len(turning)
     for both, alone in zip(by_both[1:3], searched[1:3], strict=True):
         np.testing.assert_allclose(both, alone, rtol=0.0, atol=1e-8)
     np.testing.assert_allclose(by_both.zeros, searched.zeros, rtol=0.0, atol=1e-3)
     for part, limit in enumerate(scene.table.limits):
-        row, nth = np.nonzero(np.isfinite(by_both.zeros[:, part]) & (searched.assembly == 0.0)[:, None])
+        row, nth = np.nonzero(np.isfinite(by_both.zeros[:, part]))
         if limit.zeros == "jump" and len(row):
             zero = by_both.zeros[row, part, nth]
             names = (*limit.signals, *limit.noise)
@@ -259,11 +265,11 @@ def compare_narrow_near_toggles(limits, others, row):
 
 def test_limits_found_side_by_side_have_the_same_bits_among_any_others_and_interpreted(monkeypatch):
     scene = presses_near_toggles()
-    every = full_turns(scene, scene.table.limits, np.arange(150))[1]
+    every = search_side_by_side(scene, scene.table.limits, np.arange(150))[1]
     some = np.array([77, 3, 149])
     for most in (math.inf, -1):
         monkeypatch.setattr(laid_out, "INTERPRETED_DESIGNS", most)
-        alone = full_turns(scene, scene.table.limits, some)[1]
+        alone = search_side_by_side(scene, scene.table.limits, some)[1]
         for k, design in enumerate(some):
             same = some_of(alone, alone.row == k), some_of(every, every.row == design)
             for one, other in zip(same[0][1:], same[1][1:], strict=True):
@@ -292,7 +298,7 @@ def test_a_ram_that_turns_round_three_times_within_a_degree():
         **{role: ls.Link(length, 1.0, 0.1) for role, length in links.items()},
     )
     scene = ls.Scene(mechanism, 1.0).unloaded
-    rows, events, angle = full_turns(scene, scene.table.limits, np.arange(len(away)))
+    rows, events, angle = search_side_by_side(scene, scene.table.limits, np.arange(len(away)))
     np.testing.assert_array_equal(np.sort(rows), np.arange(len(away)))
     turns = np.radians(by_row(events.row, angle, len(away))) - outermost
     turns = np.sort(np.mod(turns + np.pi, 2.0 * np.pi) - np.pi, axis=1)

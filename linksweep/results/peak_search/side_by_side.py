@@ -1,8 +1,8 @@
-"""Find the limits of designs that turn fully, side by side: near-toggles, and the angles at which forces jump or jam.
+"""Find where signals of limits come near to zero, designs side by side: toggles, near-toggles, jumps and jams.
 
 All signals are sampled on pieces of the turn, and those that come near to zero are looked at closely. Where one part of
-a machine comes near to a toggle, those beyond it move quickly: the turn is divided there, and searched again, until no
-other such place is found. Few designs are searched more than twice.
+a machine is in a toggle, or near one, those beyond it move quickly: the turn is divided there, and searched again,
+until no other such place is found. Few designs that turn fully are searched more than twice.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from linksweep.engine.near_zero import dips, samples
 from linksweep.engine.near_zero.find import dips_and_zeros
 from linksweep.engine.peaks.evaluators import ANYWHERE, FAR, FAR_WIDTH, NEAR_WIDTH, OF_HALF, TANGENT
 from linksweep.engine.quantity import Limit, Row, Table
-from linksweep.engine.run import Field, Fields
+from linksweep.engine.run import Field, Fields, evaluate
 from linksweep.engine.trace.plan import Plan
 from linksweep.physics.algebra import planar
 from linksweep.physics.algebra.arithmetic import Number
@@ -35,6 +35,8 @@ NARROW = 0.1
 """Half-width of a near-toggle, as tangent of half the angle, below which samples must be dense about it."""
 SAME = 0.5
 """Distance of two near-toggles, relative to their width, up to which samples about one are dense enough for both."""
+SAME_TOGGLE = 1e-9
+"""Distance of two toggles that are one, as tangent of half the angle."""
 MORE_LOOKS = 3
 """Looks at a design, besides one for each of its limits, before it is left to another search."""
 KINDS = {"toggle": dips.TOGGLE, "wedge": dips.BOUND, "dead_centre": dips.BOUND, "jump": dips.JUMP}
@@ -46,8 +48,8 @@ WIDTH = "turn_width"
 
 class Events(NamedTuple):
     """Near-toggles, zeros and flat places of designs: row of the design, place on the turn as in
-    `engine.near_zero.samples`, and number of the limit; half-width of a near-toggle, 0 of a zero, and −1 times that of
-    a flat place."""
+    `engine.near_zero.samples`, and number of the limit; half-width of a near-toggle, 0 of a zero, such as a toggle, and
+    −1 times that of a flat place."""
 
     row: Array
     place: Array
@@ -61,9 +63,9 @@ class Events(NamedTuple):
         return 2.0 * np.degrees(np.arctan(self.place - samples.FAR_HALF * half)) + 180.0 * half
 
 
-def full_turns(scene: Scene, limits: tuple[Limit, ...], designs: Array) -> tuple[Array, Events, Array]:
-    """Return the rows of those designs of a mechanism alone that turn fully and stay clear of all toggles; their
-    events; and the angles of these [degree]. Such designs may also be among those that are left out."""
+def search_side_by_side(scene: Scene, limits: tuple[Limit, ...], designs: Array) -> tuple[Array, Events, Array]:
+    """Return the rows of those designs of a mechanism alone that this search suits; their events; and the angles of
+    these [degree]. Left out are designs that touch a toggle but for noise, or have too many events."""
     simple = limits and scene.steady and scene.period == scene.mechanism.period
     simple = simple and scene.mechanism.fastest <= FASTEST and _all_move(scene, limits, designs)
     every = np.arange(len(designs) if simple else 0)
@@ -81,32 +83,37 @@ def _all_move(scene: Scene, limits: tuple[Limit, ...], designs: Array) -> bool:
 
 
 def _search(scene: Scene, limits: tuple[Limit, ...], designs: Array, rows: Array) -> tuple[Array, Events]:
-    """Return the rows of those designs in some rows that turn fully, and their events."""
+    """Return the rows of those designs in some rows that are not left out, and their events."""
     nothing = Events(np.empty(0, dtype=int), np.empty(0), np.empty(0, dtype=int), np.empty(0))
+    before_others = np.array([limit.zeros == "toggle" for limit in limits[:-1]] + [False])
     settled, results, cuts = [rows[:0]], [nothing], nothing
     for _ in range(len(limits) + MORE_LOOKS):
         if not len(rows):
             break
         events, left = _look(scene, limits, designs[rows], cuts)
-        before_others = (events.part < len(limits) - 1) & (events.width > 0.0) & (events.width < NARROW)
-        narrow = some_of(events, before_others | (events.width < 0.0))
-        again = np.bincount(narrow.row[~_are_among(narrow, cuts, len(rows))], minlength=len(rows)) > 0
+        known = _are_among(events, cuts, len(rows))
+        narrow = np.where(events.width > 0.0, events.part < len(limits) - 1, before_others[events.part])
+        narrow = (events.width < 0.0) | ((events.width < NARROW) & narrow)
+        again = np.bincount(events.row[narrow & ~known], minlength=len(rows)) > 0
         done = ~(left | again)
         settled.append(rows[done])
-        own = some_of(events, done[events.row] & (events.width >= 0.0))
+        toggles = some_of(cuts, cuts.width == 0.0)
+        own = joined([some_of(events, (events.width > 0.0) | ((events.width == 0.0) & ~(narrow & known))), toggles])
+        own = some_of(own, done[own.row])
         results.append(own._replace(row=rows[own.row]))
         again &= ~left
-        cuts = joined([narrow, some_of(cuts, cuts.width < 0.0)])  # a place is flat no more on pieces that end there
+        cuts = joined([some_of(events, narrow), some_of(cuts, cuts.width <= 0.0)])  # pieces that end there hide these
         cuts = some_of(cuts, again[cuts.row])
         rows, cuts = rows[again], _apart(cuts._replace(row=(np.cumsum(again) - 1)[cuts.row]))
     return np.concatenate(settled), joined(results)
 
 
-def _are_among(narrow: Events, cuts: Events, designs: int) -> Array:
+def _are_among(events: Events, cuts: Events, designs: int) -> Array:
     """Return whether each of these places is one at which the turn is cut, and samples are dense enough."""
-    place, width = (by_row(cuts.row, numbers, designs)[narrow.row] for numbers in (cuts.place, abs(cuts.width)))
-    own = abs(narrow.width)[:, None]
-    return ((abs(place - narrow.place[:, None]) < SAME * own) & (width < own / SAME)).any(axis=1)
+    place, width = (by_row(cuts.row, numbers, designs)[events.row] for numbers in (cuts.place, abs(cuts.width)))
+    own = abs(events.width)[:, None]
+    same = abs(place - events.place[:, None]) < np.maximum(SAME * own, SAME_TOGGLE)
+    return (same & (width <= own / SAME)).any(axis=1)
 
 
 def _apart(cuts: Events) -> Events:
@@ -114,7 +121,7 @@ def _apart(cuts: Events) -> Events:
     cuts = some_of(cuts, np.lexsort((cuts.place, cuts.row)))
     width = abs(cuts.width)
     wider = np.maximum(width[1:], width[:-1])
-    same = (np.diff(cuts.row) == 0) & (np.diff(cuts.place) < SAME * wider)
+    same = (np.diff(cuts.row) == 0) & (np.diff(cuts.place) < np.maximum(SAME * wider, SAME_TOGGLE))
     dropped = np.flatnonzero(same) + (width[1:] >= width[:-1])[same]
     return _apart(some_of(cuts, np.delete(np.arange(len(width)), dropped))) if len(dropped) else cuts
 
@@ -141,6 +148,21 @@ def _evaluated(scene: Scene, limits: tuple[Limit, ...], designs: Array) -> tuple
     places = ((ANYWHERE, (index, ONE)), (OF_HALF, (index, ONE)))
     own = {WIDTH: Field((ONE,), np.ones(len(designs)))}
     return one_by_one(scene, designs, _table(scene.table, limits), (*outputs, *WIDTHS), own, places)
+
+
+def close_at(scene: Scene, limits: tuple[Limit, ...], designs: Array, angles: Array) -> Array:
+    """Return whether each of these designs closes at an angle [degree]: signals are positive there but for noise."""
+    toggles = [limit for limit in limits if limit.zeros == "toggle"]
+    if not (toggles and len(designs)):
+        return np.full(len(designs), True)
+    signals, noise = ([name for limit in toggles for name in getattr(limit, part)] for part in ("signals", "noise"))
+    away = angles - number_of(scene, scene.mechanism.near_toggle_angle, designs)
+    half = np.floor(np.mod(away + 90.0, 360.0) / 180.0)
+    tangent = np.tan(np.radians(0.5 * (np.mod(away - 180.0 * half + 180.0, 360.0) - 180.0)))
+    own = {TANGENT: Field((ONE,), tangent), FAR: Field((ONE,), half)}
+    request, inputs = one_by_one(scene, designs, scene.table.between_samples, (*signals, *noise), own, ())
+    values = evaluate(request, inputs, scene.grid(1), {ONE: len(designs)})
+    return np.all([values[name].values >= -values[by].values for name, by in zip(signals, noise, strict=True)], axis=0)
 
 
 @lru_cache(maxsize=64)
