@@ -95,10 +95,11 @@ class Log:
         return array
 
     def refused(self, error: ValueError, where: Where) -> Any:
-        """Report the problems of a constructor, one a line with its path first, but for values that were not read."""
+        """Report the problems of a constructor, one a line with its path first, but for values that were not read, and
+        what it stumbled over there."""
         known = {*self.misplaced, *(place for place, _ in self.problems)}
         above = {place[:k] for place in known for k in range(len(place))}
-        for line in str(error).split("\n"):
+        for line in (line for line in str(error).split("\n") if UNREAD not in line):
             path = re.findall(r"^[\w.\[\]]*", line)[0].rstrip(".")
             keys = tuple(int(key) - 1 if key.isdigit() else key for key in re.findall(r"\w+", path))
             place = (*where, *keys) if where or {*keys[:1]} <= {*self.top} else ("mechanism", *keys)

@@ -124,7 +124,9 @@ def test_problems_have_line_and_path(old, new, problem):
     assert any(line.startswith(problem) for line in lines), lines
 
 
-@pytest.mark.parametrize(("old", "new"), [("guides.slide", "guide.slide"), ("E on slide", "E on slid")])
+@pytest.mark.parametrize(
+    ("old", "new"), [("guides.slide", "guide.slide"), ("E on slide", "E on slid"), ('"-90 deg"', '"-90deg"')]
+)
 def test_only_the_cause_is_reported(old, new):
     assert len(problems(old, new)) == 1
 
