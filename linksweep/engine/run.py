@@ -22,8 +22,7 @@ from linksweep.engine.blocks import block as new_block
 from linksweep.engine.interpreter import evaluate as interpreter
 from linksweep.engine.kernel import reduce
 from linksweep.engine.kernel.compile import compiled
-from linksweep.engine.kernel.fuse import fuse
-from linksweep.engine.kernel.side_by_side import fits_side_by_side, parity
+from linksweep.engine.kernel.side_by_side import SideBySideWriter, fits_side_by_side, parity
 from linksweep.engine.kernel.vectors import LANES
 from linksweep.engine.kernel.writer import Reduction, Writer
 from linksweep.engine.patience import Patience
@@ -111,7 +110,7 @@ class Runner(Patience):
 
     @cached_property
     def fused(self) -> Writer:
-        return fuse(self.plan, self.reductions)
+        return Writer(self.plan, self.reductions)
 
     def fused_for(self, designs: int, profiles: np.ndarray, at: np.ndarray) -> Writer:
         """Return the kernel for this many designs in the innermost loop, and the samples of its profiles."""
@@ -124,7 +123,7 @@ class Runner(Patience):
             key = tuple(parity(row) if len(node.dims) == 1 else 0 for node, row in rows)
             self.latest = profiles, key
         if key not in self.writers:
-            self.writers[key] = fuse(self.plan, self.reductions, key)
+            self.writers[key] = SideBySideWriter(self.plan, self.reductions, key)
         return self.writers[key]
 
     def layout(self, sizes: Sizes) -> Layout:
@@ -244,7 +243,7 @@ def _execute(
 
     def work(first: int, last: int) -> None:
         apart = room + LANES if room % 512 == 0 else room  # else all rows would compete for the same cache sets
-        scratch, values = np.empty((fused.scratch_rows, apart)), new_block(1, fused.value_count)[0]
+        scratch, values = np.empty((len(fused.scratch), apart)), new_block(1, fused.value_count)[0]
         kernel(
             first * unit, min(last * unit, length), samples, room, apart, layout.sizes, parameters, parameter_at,
             profiles, profile_at, block, block_at, single, single_at, scratch, values, grid.angles,

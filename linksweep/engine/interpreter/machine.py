@@ -58,9 +58,6 @@ def _interpreter(builder: Any, program: Any, registers: Any, numbers: Any, rows:
     integer, double = write.integer, write.double
     last = builder.sub(samples, integer(REGISTER))
 
-    def smaller(x: Any, y: Any) -> Any:
-        return builder.select(builder.icmp_signed("<", x, y), x, y)
-
     def at(register: Any, k: Any) -> Any:
         return builder.add(builder.mul(register, integer(TILE)), k)
 
@@ -93,7 +90,7 @@ def _interpreter(builder: Any, program: Any, registers: Any, numbers: Any, rows:
                 write.store(write.operators[name](*values), registers, at(place[0], k))
 
             vectors(name, operate)
-        here = lambda k: smaller(builder.add(tile, k), last)  # noqa: E731  # the last vector ends with the row
+        here = lambda k: write.smaller(builder.add(tile, k), last)  # noqa: E731  # the last vector ends with the row
         vectors("load", lambda k: write.store(write.load(row_start(place[1]), here(k)), registers, at(place[0], k)))
         vectors("store", lambda k: write.store(write.load(registers, at(place[1], k)), row_start(place[0]), here(k)))
         builder.position_at_end(done)

@@ -10,11 +10,12 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
+import inspect
 import pickle
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from functools import cache, partial
-from types import ModuleType
+from types import FunctionType, ModuleType
 from typing import Any
 
 from linksweep.base.cache import forget, keep, recall
@@ -42,13 +43,32 @@ def compiled(kernel_source: str, streamed: str = "", kinds: tuple[str, ...] = KI
     from numba.core.sigutils import normalize_signature
 
     context = f"{kinds} {vectors.SOURCE} {vectors.width()} {streamed}"
-    module = _module(kernel_source, {"vectorised": partial(vectors.intrinsic, streamed=streamed)}, context)
+    module = _module(kernel_source, {"vectorised": partial(_intrinsic, streamed=streamed)}, context)
     signature = normalize_signature(f"void({', '.join(TYPES[kind] for kind in kinds)})")
     callback: Any = CFunc(module.kernel, signature, {}, SETTINGS)
     callback._cache = KernelCache(f"{module.__name__}.kernel")
     with _in_written_order() if "in_stages(" in kernel_source else contextlib.nullcontext():
         callback.compile()
     return MachineCode(callback, callback.address, kinds)
+
+
+def _intrinsic(function: FunctionType, streamed: str) -> Callable:
+    """Return a function as instructions that numba puts in place of its calls."""
+    import numba.extending
+    from numba.core import types
+
+    parameters = inspect.signature(function).parameters
+
+    def typed(_typing_context: Any, *kinds: Any) -> tuple[Any, Callable]:
+        def write(context: Any, builder: Any, _signature: Any, values: Any) -> Any:
+            vectors.write_function(builder, function, dict(zip(parameters, values, strict=True)), streamed)
+            return context.get_dummy_value()
+
+        return types.void(*kinds), write
+
+    first = inspect.Parameter("typing_context", inspect.Parameter.POSITIONAL_OR_KEYWORD)
+    typed.__signature__ = inspect.Signature([first, *parameters.values()])  # type: ignore[attr-defined]
+    return numba.extending.intrinsic(typed)
 
 
 @contextlib.contextmanager

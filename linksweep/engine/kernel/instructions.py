@@ -24,24 +24,6 @@ SOURCE = "".join(map(inspect.getsource, (sys.modules[__name__], ahead, arctangen
 """All that enters the machine code besides what is asked for."""
 
 
-def intrinsic(emit: Callable[..., None], parameters: Iterable[str]) -> Callable:
-    """Return what `emit(builder, *arguments)` writes as a function that numba-compiled ones call."""
-    import numba.extending
-    from numba.core import types
-
-    def typed(_typing_context: Any, *kinds: Any) -> tuple[Any, Callable]:
-        def write(context: Any, builder: Any, _signature: Any, values: Any) -> Any:
-            emit(builder, *values)
-            return context.get_dummy_value()
-
-        return types.void(*kinds), write
-
-    names = ("typing_context", *parameters)
-    plain = [inspect.Parameter(name, inspect.Parameter.POSITIONAL_OR_KEYWORD) for name in names]
-    typed.__signature__ = inspect.Signature(plain)  # type: ignore[attr-defined]
-    return numba.extending.intrinsic(typed)
-
-
 def call(function: Callable[..., None], arguments: tuple[Any, ...]) -> None:
     """Call a function that is an argument itself."""
     function(*arguments)
@@ -153,6 +135,14 @@ class Instructions:
             yield k, kept
             longest_chains_first(block)
             kept = of_next
+
+    def smaller(self, x: Any, y: Any) -> Any:
+        """Return the smaller of two integers."""
+        return self.builder.select(self.builder.icmp_signed("<", x, y), x, y)
+
+    def larger(self, x: Any, y: Any) -> Any:
+        """Return the larger of two integers."""
+        return self.builder.select(self.builder.icmp_signed(">", x, y), x, y)
 
     def slot(self, value: Any) -> Any:
         """Return a place in memory that holds a value."""

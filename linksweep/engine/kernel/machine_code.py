@@ -111,10 +111,10 @@ def machine_code(emit: Callable[..., Any], kinds: tuple[str, ...], text: str) ->
 
     binding.initialize_native_target()
     binding.initialize_native_asmprinter()
-    processor, features = _processor(binding)
+    cpu, features = processor()
     triple = binding.Target.from_default_triple()
-    target = triple.create_target_machine(processor, features, opt=3)
-    made_of = f"{binding.llvm_version_info} {target.triple} {processor} {features} {SOURCE} {kinds} {text}"
+    target = triple.create_target_machine(cpu, features, opt=3)
+    made_of = f"{binding.llvm_version_info} {target.triple} {cpu} {features} {SOURCE} {kinds} {text}"
     name = f"{emit.__name__.strip('_')}_{hashlib.sha256(made_of.encode()).hexdigest()[:24]}"
     code = recall(name)
     if code is None:
@@ -126,8 +126,10 @@ def machine_code(emit: Callable[..., Any], kinds: tuple[str, ...], text: str) ->
     return MachineCode(engine, engine.get_function_address(name), kinds)
 
 
-def _processor(binding: Any) -> tuple[str, str]:
+def processor() -> tuple[str, str]:
     """Return the processor to compile for and its features: this one, or the one that numba's settings name."""
+    from llvmlite import binding
+
     if name := os.environ.get("NUMBA_CPU_NAME"):
         return name, os.environ.get("NUMBA_CPU_FEATURES", "")
     return binding.get_host_cpu_name(), binding.get_host_cpu_features().flatten()

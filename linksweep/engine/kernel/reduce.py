@@ -92,19 +92,19 @@ def largest_lane(work):
 
 def mean(row, angles, work):
     """Return the mean of the samples that are not NaN, and their number."""
-    total, count = 0.0, 0
-    for j in range(len(row)):
-        if row[j] == row[j]:
-            total += row[j]
-            count += 1
-    return (total / count if count else math.nan), float(count)
+    return mean_of_powers(row, 1)
 
 
 def mean_square(row, angles, work):
     """Return the mean of the squares of the samples that are not NaN, and their number."""
+    return mean_of_powers(row, 2)
+
+
+def mean_of_powers(row, power):
+    """Return the mean of a power, 1 or 2, of the samples that are not NaN, and their number."""
     total, count = 0.0, 0
     for j in range(len(row)):
         if row[j] == row[j]:
-            total += row[j] * row[j]
+            total += row[j] if power == 1 else row[j] * row[j]
             count += 1
     return (total / count if count else math.nan), float(count)

@@ -68,24 +68,12 @@ class SideBySideWriter(Writer):
         other = self.mirrored and self.per_sample(node) and self.parity[node] != 1
         return super().name(node) + ("_mirrored" if other else "")
 
-    # the innermost level is one function, which has its loop
-    def _design_loop(self, level: int) -> None:
+    def _level(self, level: int) -> None:
+        """Write a level; the innermost is one function, which has its loop."""
         if level < self.innermost:
-            super()._design_loop(level)
-
-    def _single_values(self, level: int) -> None:
-        if level < self.innermost:
-            super()._single_values(level)
+            super()._level(level)
         else:
             self._designs(level)
-
-    def _sample_loop(self, level: int) -> None:
-        if level < self.innermost:
-            super()._sample_loop(level)
-
-    def _reductions(self, level: int) -> None:
-        if level < self.innermost:
-            super()._reductions(level)
 
     def _designs(self, level: int) -> None:
         """Write the function of the innermost loop."""

@@ -11,8 +11,8 @@ functions that call each other. A name has one type, that of the value it takes 
 place, so there is no recursion. Nobody checks that an index is at least 0 and below the length, nor that no integer is
 divided by 0.
 
-What is written as instructions already, an object with the methods of `Emitted`, is called like a function; so is a
-function that also is plain Python, but `written_by` another one.
+What is written as instructions already, an object with a method `emit(builder, *arguments)` and a `text` that differs
+wherever they do, is called like a function; so is a function that also is plain Python, but `written_by` another one.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ import sys
 from collections.abc import Callable
 from functools import partial, reduce
 from types import FunctionType, ModuleType
-from typing import Any, NamedTuple, NoReturn, Protocol
+from typing import Any, NamedTuple, NoReturn
 
 from linksweep.engine.kernel import values
 from linksweep.engine.kernel.instructions import Instructions, call
@@ -33,16 +33,6 @@ from linksweep.engine.kernel.values import ARITHMETIC, COMPARISONS, Values, each
 
 SOURCE = inspect.getsource(sys.modules[__name__]) + inspect.getsource(values)
 """All that enters the machine code besides functions and instructions."""
-
-
-class Emitted(Protocol):
-    """A function that writes its instructions in the place of its call."""
-
-    text: str
-    """A text that differs wherever the instructions do."""
-
-    def emit(self, builder: Any, *arguments: Any) -> Any:
-        """Write the instructions, and return a value, a tuple of such, or nothing."""
 
 
 def written_by(write: Callable[..., Any]) -> Callable[[Callable], Any]:
@@ -144,9 +134,6 @@ class Translator(Values):
         """Go on in another block, unless this one has ended already."""
         if not self.builder.block.is_terminated:
             self.builder.branch(block)
-
-    def _pass_statement(self, node: ast.Pass) -> None:
-        pass
 
     def _expr_statement(self, node: ast.Expr) -> None:
         if not isinstance(node.value, ast.Constant):  # a docstring

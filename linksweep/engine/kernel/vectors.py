@@ -53,7 +53,7 @@ from __future__ import annotations
 import inspect
 import math
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from functools import partial
 from types import FunctionType
@@ -62,7 +62,7 @@ from typing import Any
 from linksweep.engine.kernel import instructions, reduce, running, translate
 from linksweep.engine.kernel.ahead import longest_chains_first
 from linksweep.engine.kernel.instructions import REGISTER, Instructions
-from linksweep.engine.kernel.machine_code import ROW, Array, new_function, write_call
+from linksweep.engine.kernel.machine_code import ROW, Array, new_function, processor, write_call
 
 LANES = 2 * REGISTER
 """Samples side by side on processors with the widest registers; the least length of a row."""
@@ -79,26 +79,20 @@ SOURCE = inspect.getsource(sys.modules[__name__]) + "".join(
 
 
 def width() -> int:
-    """Return how many samples the processor that numba compiles for takes side by side: two registers of them, as one
-    alone would wait for the results of its own operations."""
-    from numba.core.registry import cpu_target
-
-    features = cpu_target.target_context.codegen().magic_tuple()[2].split(",")
+    """Return how many samples the processor takes side by side: two registers of them, as one alone would wait for the
+    results of its own operations."""
+    features = processor()[1].split(",")
     return 16 if "+avx512f" in features else 8 if "+avx" in features else 4
 
 
-def intrinsic(function: FunctionType, streamed: str = "") -> Callable:
-    """Return a function as instructions that numba puts in place of its calls; rows of the array that is `streamed` are
-    stored past the caches."""
-    names = list(inspect.signature(function).parameters)
-
-    def emit(builder: Any, *arguments: Any) -> None:
-        writer, passed = _Writer(builder, streams=bool(streamed)), dict(zip(names, arguments, strict=True))
-        lengths = {name: passed.get(length) for name, length in ROW_LENGTHS.items()}
-        values = [writer.argument(x, lengths.get(name), name == streamed) for name, x in passed.items()]
-        FunctionType(function.__code__, writer.names())(*values)
-
-    return instructions.intrinsic(emit, names)
+def write_function(builder: Any, function: FunctionType, passed: Mapping[str, Any], streamed: str = "") -> None:
+    """Write the instructions of a function of these arguments; rows of the array that is `streamed` are stored past the
+    caches."""
+    writer, arguments = _Writer(builder, streams=bool(streamed)), list[Any]()
+    for name, llvm in passed.items():
+        row = passed.get(ROW_LENGTHS.get(name, "")), name == streamed
+        arguments.append(_Array(writer, llvm, *row) if llvm.type.is_pointer else _Value(writer, llvm))
+    FunctionType(function.__code__, writer.names())(*arguments)
 
 
 def _align_stack(function: Any) -> None:
@@ -231,9 +225,6 @@ class _Writer:
         summaries = {kind: partial(self.summary, function) for kind, function in SUMMARIES.items()}
         return {"math": math, "number": self.number, "running": self.running} | loops | operations | summaries
 
-    def argument(self, llvm: Any, length: Any, streamed: bool) -> _Value | _Array:
-        return _Array(self, llvm, length, streamed) if llvm.type.is_pointer else _Value(self, llvm)
-
     # ------------------------------------------------------------------------------------------ loops
 
     def in_vectors(self, first: _Value | int, last: _Value | int, samples: _Value | int) -> Iterator[_Value]:
@@ -289,15 +280,15 @@ class _Writer:
         for j, _ in self._inside(loop):
             for memory in self.memories:
                 memory.begin_pass()
-            yield [place(self._larger(self.builder.add(j, more), first)) for more in ahead]
+            yield [place(self.instructions.larger(self.builder.add(j, more), first)) for more in ahead]
             for memory in self.memories:
                 memory.end_pass()
 
     def _place_of_vector(self, samples: _Value | int) -> Callable[[Any], _Value]:
         """Return a function of a loop's counter: where its vector begins, which must end with the row."""
-        builder, step = self.builder, self.integer(self.instructions.width)
-        latest = builder.sub(self._larger(self.integer(samples), self.integer(LANES)), step)
-        return lambda j: _Value(self, builder.select(builder.icmp_signed("<", j, latest), j, latest), VECTORS)
+        write, step = self.instructions, self.integer(self.instructions.width)
+        latest = self.builder.sub(write.larger(self.integer(samples), self.integer(LANES)), step)
+        return lambda j: _Value(self, write.smaller(j, latest), VECTORS)
 
     def each(self, first: _Value | int, last: _Value | int) -> Iterator[_Value]:
         """Write a loop over samples one by one, as `in_vectors` does."""
@@ -333,9 +324,6 @@ class _Writer:
         called.linkage = "internal"
         write_call(self.builder, called, tuple(Array(x.data, (row.length,)) for x in (row, angles, work)))
         return work[0], work[1]
-
-    def _larger(self, x: Any, y: Any) -> Any:
-        return self.builder.select(self.builder.icmp_signed(">", x, y), x, y)
 
     @contextmanager
     def before_loop(self) -> Iterator[None]:

@@ -60,7 +60,7 @@ class Writer:
         self.parameters = tuple(node for node in inputs if not self.per_sample(node))
         self.profiles = tuple(node for node in inputs if self.per_sample(node))
         self.scratch = {node: k for k, node in enumerate(self._kept_in_scratch())}
-        values = (node for node in self.nodes if self._is_operation(node) and not self.per_sample(node))
+        values = (node for node in self.nodes if node.operands and not self.per_sample(node))
         self.values = {node: k for k, node in enumerate(values)}
         self.kernel: list[str] = []
         self.functions: list[str] = []
@@ -89,18 +89,10 @@ class Writer:
         }
         return sorted(read_back | signals, key=lambda node: node.position)
 
-    @staticmethod
-    def _is_operation(node: Node) -> bool:
-        return node.operator not in ("input", "constant")
-
     @property
     def unit(self) -> int:
         """Designs of the outermost loop that are done together."""
         return 1
-
-    @property
-    def scratch_rows(self) -> int:
-        return len(self.scratch)
 
     @property
     def value_count(self) -> int:
@@ -115,12 +107,16 @@ class Writer:
         self.write(0, f"def kernel({ARGUMENTS}):")
         self.write(1, "pass")
         for level in range(self.innermost + 1):
-            if level:
-                self._design_loop(level)
-            self._single_values(level)
-            self._sample_loop(level)
-            self._reductions(level)
+            self._level(level)
         return "\n".join([*self.functions, "", *self.kernel]) + "\n"
+
+    def _level(self, level: int) -> None:
+        """Write a level: the head of its loop, and calls of the functions with its arithmetic."""
+        if level:
+            self._design_loop(level)
+        self._single_values(level)
+        self._sample_loop(level)
+        self._reductions(level)
 
     def _design_loop(self, level: int) -> None:
         if level < len(self.plan.loops) and level == self.innermost:
@@ -259,7 +255,7 @@ class Writer:
         waiting = list(rows)
         while waiting:
             node = waiting.pop()
-            if node not in needed and self.per_sample(node) and self._is_operation(node):
+            if node not in needed and self.per_sample(node) and node.operands:
                 needed.add(node)
                 waiting.extend(node.operands)
         return _in_order(needed)
