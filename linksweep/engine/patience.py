@@ -4,9 +4,9 @@
 class Patience:
     """Something that is interpreted until enough work has added up."""
 
-    interpreted: int = 0
+    waited: int = 0
 
     def should_interpret(self, work: int, most: float) -> bool:
         """Return whether to interpret this much more work, where `most` is the most in all."""
-        self.interpreted += work
-        return self.interpreted <= most
+        self.waited += work
+        return self.waited <= most

@@ -35,10 +35,10 @@ def in_python(monkeypatch):
     monkeypatch.setattr(run, "fits_side_by_side", lambda fused: False)  # its loops over vectors are no Python
     monkeypatch.setattr(run, "COMPILE_AFTER", -1)
     monkeypatch.setattr(laid_out, "INTERPRETED_DESIGNS", math.inf)
-    for made in (run.runner, laid_out.searcher):
+    for made in (run.runner, laid_out.evaluators_of):
         made.cache_clear()
     yield
-    for made in (run.runner, laid_out.searcher):
+    for made in (run.runner, laid_out.evaluators_of):
         made.cache_clear()
 
 
@@ -92,6 +92,6 @@ def test_folded_and_nested_loops_give_the_same_bits(deepest, speeds, masses, mon
     of = scene(np.random.default_rng(2), speeds, masses)
     nested = results(of)
     monkeypatch.setattr(writer, "DEEPEST", deepest)
-    run.runner.cache_clear(), laid_out.searcher.cache_clear()
+    run.runner.cache_clear(), laid_out.evaluators_of.cache_clear()
     for result, expected in zip(results(of), nested, strict=True):
         xr.testing.assert_identical(result, expected)

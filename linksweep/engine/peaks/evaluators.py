@@ -36,6 +36,7 @@ from linksweep.engine.kernel.ahead import SLOW
 from linksweep.engine.kernel.instructions import REGISTER as LANES
 from linksweep.engine.kernel.instructions import Instructions
 from linksweep.engine.kernel.machine_code import INTEGER, INTEGERS, ROW, TABLE, MachineCode, machine_code
+from linksweep.engine.patience import Patience
 from linksweep.engine.peaks.interpreted import Interpreted
 from linksweep.engine.peaks.lanewise import Values
 from linksweep.engine.peaks.samples import HALF, PLACED
@@ -87,7 +88,7 @@ class Functions(NamedTuple):
         return [each.address if isinstance(each, MachineCode) else each for each in functions]
 
 
-class Evaluators:
+class Evaluators(Patience):
     """Evaluators of some of a plan's outputs, its signals."""
 
     def __init__(self, plan: Plan, signals: tuple[str, ...]) -> None:
@@ -99,7 +100,7 @@ class Evaluators:
         """True where samples do not mirror each other."""
         names = (ALONG, END) if self.even else (ANYWHERE, OF_HALF) if self.anywhere else (TANGENT, FAR)
         self.tangent, self.far = (place[name] for name in names)
-        work = [node for node in plan.nodes if node.operator not in ("input", "constant")]
+        work = [node for node in plan.nodes if node.operands]
         self.inputs = [node for node in place.values() if node not in (self.tangent, self.far)]
         self.dims = sorted(plan.loops, key=lambda dim: dim != PIECE)
         """The design dims as designs are counted, the last one fastest."""
@@ -189,7 +190,7 @@ class Evaluators:
         builder = vectors.builder
         lanes = vectors.ir.VectorType(vectors.integer, LANES)([*range(LANES)])
         design, latest = builder.add(vectors.wide(front), lanes), vectors.wide(builder.sub(designs, vectors.integer(1)))
-        return builder.select(builder.icmp_signed("<", design, latest), design, latest)
+        return vectors.smaller(design, latest)
 
     def _emit_constants(self, vectors: Instructions, digit: dict, alike: frozenset[str], *arrays: Any) -> None:
         """Emit the constants that depend on all of some dims, in which lanes are `alike`, from those that do not."""

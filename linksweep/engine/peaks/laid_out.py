@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cache, lru_cache
 from typing import Any, NamedTuple
 
@@ -12,7 +11,6 @@ import numpy as np
 
 from linksweep.engine.kernel.machine_code import INTEGER, INTEGERS, ROW, TABLE
 from linksweep.engine.kernel.translate import translated
-from linksweep.engine.patience import Patience
 from linksweep.engine.peaks import turns
 from linksweep.engine.peaks.evaluators import FAR_WIDTH, NEAR_WIDTH, Evaluators, Functions
 from linksweep.engine.peaks.samples import EVENLY, HALF, grades
@@ -29,24 +27,8 @@ ON_PIECES = (*OF_DESIGNS[:-2], TABLE, TABLE)
 """Kinds of the arguments that `LaidOut.arguments` makes, and `LaidOut.arguments_of_pieces`."""
 compiled = cache(translated)
 """Return a search of these kinds of arguments as machine code."""
-
-
-@dataclass(eq=False)
-class Searcher(Patience):
-    """The evaluators of some outputs of a plan, ready to run."""
-
-    evaluators: Evaluators
-
-    def functions(self, designs: int) -> Functions:
-        """Return the evaluators interpreted for the first designs, then compiled."""
-        interpret = self.should_interpret(designs, INTERPRETED_DESIGNS)
-        return self.evaluators.interpreted if interpret else self.evaluators.compiled
-
-
-@lru_cache(maxsize=256)
-def searcher(plan: Plan, signals: tuple[str, ...]) -> Searcher:
-    """Return the `Searcher` of these arguments, one for all requests."""
-    return Searcher(Evaluators(plan, signals))
+evaluators_of = lru_cache(maxsize=256)(Evaluators)
+"""Return the `Evaluators` of these arguments, one for all requests."""
 
 
 class LaidOut(NamedTuple):
@@ -111,10 +93,11 @@ class LaidOut(NamedTuple):
 def laid_out(plan: Plan, inputs: Fields, sizes: Sizes, half: int = HALF, evenly: float = EVENLY) -> LaidOut:
     """Return the designs of a plan, whose outputs are signals, all with the same dims, and widths of near-toggles."""
     signals = tuple(name for name in plan.outputs if name not in WIDTHS)
-    ready = searcher(plan, signals)
-    nodes, shape = ready.evaluators.inputs, tuple(sizes[dim] for dim in ready.evaluators.dims)
-    parameters, parameter_at = flat([ordered(plan, inputs[node.value]) for node in nodes])
-    functions = ready.functions(math.prod(shape))
+    evaluators = evaluators_of(plan, signals)
+    shape = tuple(sizes[dim] for dim in evaluators.dims)
+    parameters, parameter_at = flat([ordered(plan, inputs[node.value]) for node in evaluators.inputs])
+    interpret = evaluators.should_interpret(math.prod(shape), INTERPRETED_DESIGNS)
+    functions = evaluators.interpreted if interpret else evaluators.compiled
     return LaidOut(signals, functions, shape, (parameters, parameter_at[:-1]), half, evenly)
 
 

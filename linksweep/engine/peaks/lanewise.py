@@ -160,8 +160,8 @@ class Around(Lanewise):
             return vectors.load(samples.data, builder.add(builder.mul(columns, j), k))
 
         with vectors.loop(none, columns, ABREAST * LANES) as (first, _):
-            blocks = [builder.add(first, vectors.integer(k * LANES)) for k in range(ABREAST)]
-            blocks = [builder.select(builder.icmp_signed("<", k, latest), k, latest) for k in blocks]
+            starts = (builder.add(first, vectors.integer(k * LANES)) for k in range(ABREAST))
+            blocks = [vectors.smaller(k, latest) for k in starts]
             running = [[*map(vectors.slot, (sample(last, k), sample(none, k), *start))] for k in blocks]
             with vectors.loop(none, count, 2) as (j, _):
                 second, after = builder.add(j, one), builder.add(j, two)

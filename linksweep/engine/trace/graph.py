@@ -21,6 +21,16 @@ FOLDABLE: dict[str, Callable[..., float]] = {
 """Operations computed while tracing where their operands are constants."""
 
 
+def _traced(name: str, reflected: bool = False) -> Callable[..., Node]:
+    """Return an operator of nodes, or of a number and a node, that traces the operation of this name."""
+
+    def operator(self: Node, other: Node | float) -> Node:
+        x, y = (other, self) if reflected else (self, other)
+        return getattr(self.graph, name)(self.graph.node(x), self.graph.node(y))
+
+    return operator
+
+
 class Node:
     """One operation (or input, or constant) of a graph, with the dimensions that its value depends on."""
 
@@ -31,29 +41,10 @@ class Node:
         self.position = len(graph.nodes)
         graph.nodes.append(self)
 
-    def __add__(self, other):
-        return self.graph.add(self, self.graph.node(other))
-
-    def __sub__(self, other):
-        return self.graph.subtract(self, self.graph.node(other))
-
-    def __mul__(self, other):
-        return self.graph.multiply(self, self.graph.node(other))
-
-    def __truediv__(self, other):
-        return self.graph.divide(self, self.graph.node(other))
-
-    def __radd__(self, other):
-        return self.graph.node(other) + self
-
-    def __rsub__(self, other):
-        return self.graph.node(other) - self
-
-    def __rmul__(self, other):
-        return self.graph.node(other) * self
-
-    def __rtruediv__(self, other):
-        return self.graph.node(other) / self
+    __add__, __radd__ = _traced("add"), _traced("add", reflected=True)
+    __sub__, __rsub__ = _traced("subtract"), _traced("subtract", reflected=True)
+    __mul__, __rmul__ = _traced("multiply"), _traced("multiply", reflected=True)
+    __truediv__, __rtruediv__ = _traced("divide"), _traced("divide", reflected=True)
 
     def __neg__(self):
         return self.graph.negate(self)

@@ -80,11 +80,7 @@ class Plan:
 
     def operations(self, *dims: str) -> Counter:
         """Return how many operations of each kind are done once per sample of these dims (no dims: once in all)."""
-        return Counter(
-            node.operator
-            for node in self.nodes
-            if node.dims == frozenset(dims) and node.operator not in ("input", "constant")
-        )
+        return Counter(node.operator for node in self.nodes if node.dims == frozenset(dims) and node.operands)
 
     def instructions(self, *dims: str) -> int:
         """Return how many instructions that takes: a low word of a sum and an arctangent take several."""
