@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -25,8 +24,6 @@ def rows(size: Size) -> list[Row]:
         return [
             *_grids(size, 20.0, {720: 1.0, 360: 1.0}),
             *_grids(size, 0.0, {1440: 1.0}),
-            _over_angle(size),
-            *_on_pieces(size),
             _lapack(size),
             *_shared(size),
             _screening(size),
@@ -39,10 +36,10 @@ def crank_rockers(count: int, least_transmission_angle: float, seed: int = 1) ->
     """Return random crank-rockers, each number different in each design, above a transmission angle [degree]."""
     rng = np.random.default_rng(seed)
     a, b, c, d = np.concatenate(list(_lengths(rng, count, least_transmission_angle)), axis=1)[:, :count]
-    links = [_link(rng, length) for length in (a, b, c)]
-    mechanism = ls.FourBar(*links, ground=_designs(d))
+    links = [design_link(rng, length) for length in (a, b, c)]
+    mechanism = ls.FourBar(*links, ground=over_designs(d))
     speed, acceleration = rng.uniform(1.0, 30.0, count), rng.uniform(-20.0, 20.0, count)
-    return ls.Scene(mechanism, _designs(speed), _designs(acceleration), gravity=(0.0, -9.81))
+    return ls.Scene(mechanism, over_designs(speed), over_designs(acceleration), gravity=(0.0, -9.81))
 
 
 def _lengths(rng: np.random.Generator, count: int, least: float) -> Iterator[np.ndarray]:
@@ -63,14 +60,14 @@ def _transmission(b: np.ndarray, c: np.ndarray, diagonal: np.ndarray) -> np.ndar
     return np.minimum(angle, 180.0 - angle)
 
 
-def _link(rng: np.random.Generator, length: np.ndarray) -> ls.Link:
+def design_link(rng: np.random.Generator, length: np.ndarray) -> ls.Link:
     n = len(length)
     mass, fraction = rng.uniform(0.2, 3.0, n), rng.uniform(0.05, 0.2, n)
     distance, angle = length * rng.uniform(0.0, 1.0, n), rng.uniform(-60.0, 60.0, n)
-    return ls.Link(*map(_designs, (length, mass, mass * length**2 * fraction, distance, angle)))
+    return ls.Link(*map(over_designs, (length, mass, mass * length**2 * fraction, distance, angle)))
 
 
-def _designs(values: np.ndarray) -> xr.DataArray:
+def over_designs(values: np.ndarray) -> xr.DataArray:
     return xr.DataArray(values, dims="design")
 
 
@@ -88,50 +85,6 @@ def _grids(size: Size, least: float, goals: dict[int, float]) -> list[Row]:
         )
         for n, goal in goals.items()
     ]
-
-
-def _over_angle(size: Size) -> Row:
-    """Time exact peaks with a table of a load over the angle: searched on pieces between some of its angles."""
-    angles = np.arange(0.0, 360.0, 5.0)
-    push = xr.DataArray(-300.0 * np.exp(-(((angles - 180.0) / 40.0) ** 2)), {"theta2": angles}, "theta2")
-    designs = replace(crank_rockers(size.designs, 20.0), loads=(ls.Load("rocker", torque=push),))
-    exact = partial(ls.peaks, designs, threads=1)
-    timed = race({EXACT: exact, _grid(360): partial(exact, theta2=360)}, size)
-    return timed.row(SHARE, EXACT, _grid(360), note="with a torque over theta2 that all designs share")
-
-
-def _on_pieces(size: Size) -> list[Row]:
-    """Time exact peaks of machines whose turn is searched in pieces, or which make only part of one."""
-    scenes = {
-        "slider-cranks with Coulomb friction in the guide": _slider_cranks(10 * size.designs),
-        "four-bars that move over part of a turn": _rocking(10 * size.designs),
-    }
-    races = {
-        note: race(
-            {EXACT: partial(ls.peaks, scene, threads=1), _grid(360): partial(ls.peaks, scene, theta2=360, threads=1)},
-            size,
-        )
-        for note, scene in scenes.items()
-    }
-    return [timed.row(SHARE, EXACT, _grid(360), note=note) for note, timed in races.items()]
-
-
-def _slider_cranks(count: int) -> ls.Scene:
-    rng = np.random.default_rng(3)
-    crank = rng.uniform(0.03, 0.06, count)
-    numbers = rng.uniform(0.2, 2.0, count), crank * rng.uniform(-0.3, 0.3, count), rng.uniform(0.02, 0.2, count)
-    links = _link(rng, crank), _link(rng, crank * rng.uniform(2.5, 4.5, count))
-    push = ls.Load("slider", tuple(map(_designs, rng.uniform(-50.0, 50.0, (2, count)))))
-    mechanism = ls.SliderCrank(*links, *map(_designs, numbers))
-    return ls.Scene(mechanism, _designs(rng.uniform(1.0, 30.0, count)), 5.0, (0.0, -9.81), [push])
-
-
-def _rocking(count: int) -> ls.Scene:
-    """Return random four-bars whose coupler and rocker reach less far than crank and ground together."""
-    rng = np.random.default_rng(4)
-    a, b, c, share = rng.uniform(0.5, 1.0, (4, count))
-    d = b + c - a * share
-    return ls.Scene(ls.FourBar(*(_link(rng, length) for length in (a, b, c)), _designs(d)), 10.0, gravity=(0.0, -9.81))
 
 
 def _grid(count: int) -> str:

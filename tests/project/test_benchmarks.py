@@ -8,18 +8,22 @@ import numpy as np
 import pytest
 from long import long_but
 
+import linksweep as ls
 from benchmarks import __main__ as front_door
 from benchmarks.cases import ALL, GENERAL, LENGTHS, QUICK, batch
 from benchmarks.report import HEADER, machine, markdown
 from benchmarks.rivals import limit, peers
+from benchmarks.speed import hard_peaks
 from benchmarks.timing import FASTER, SHARE, WALL, Race, Row, cores, race
 
-SLOW = ("missed", "first", "growth", "skipping")
-CHECKED = {"solves", "grids", "unknowns", "peaks", "skipping", "mechanisms", "linkages", "warm", "threads"}
+SLOW = ("hard_peaks", "missed", "first", "growth", "skipping")
+CHECKED = {"solves", "grids", "unknowns", "peaks", "hard_peaks", "skipping", "mechanisms", "linkages"}
+CHECKED |= {"warm", "threads"}
 GOALS = {
     "unknowns": {60, 250, 1.05, 1.1, 5, 10e-9 * QUICK.angles, 18e-9 * QUICK.angles},
     "peaks": {200, 0.8},
     "exact": {0.3, 0.35, 0.5, 1.0, 400},
+    "hard_peaks": {10e-6 * QUICK.designs, 10e-6 * 10 * QUICK.designs},
     "missed": set(),
     "skipping": {0.35, 0.75},
     "solves": set(),
@@ -60,6 +64,14 @@ def test_rows_exist_and_rivals_agree(name, rows):
 @pytest.mark.skipif(cores() < 2, reason="one core only")
 def test_two_threads_give_the_same_bits(rows):
     assert [row.error for row in rows("threads")] == [0.0] * 4 + [None]  # the last moves bytes alone
+
+
+@pytest.mark.parametrize("name", hard_peaks.LONGEST)
+def test_linkages_turn_as_their_rows_say(name):
+    turns = {kind: ls.check(hard_peaks.linkages(name, cranks)(20)) for kind, cranks in hard_peaks.KINDS.items()}
+    assert [set(checks.assembly.values) for checks in turns.values()] == [{0}, {0}, {1}]
+    clear, near, partial = (checks.transmission_angle_min.min() for checks in turns.values())
+    assert clear > 10.0 and near < 0.1 and partial < 1e-9
 
 
 @pytest.mark.long
