@@ -18,6 +18,8 @@ from linksweep.base.validate import did_you_mean
 
 Where = tuple[str | int, ...]  # keys and list positions down to a value, as TOML nests them
 
+PROBLEM = re.compile(r"""[\w.\[\]]*("| = |: | has | is | holds | depends )""")
+"""Beginning of a problem of a parameter, in contrast to what Python says that stumbles over one that is not sound."""
 UNREAD: Any = "(not read)"
 """Stands in for a value with an error, so that the constructors can still look at the others."""
 
@@ -99,7 +101,8 @@ class Log:
         what it stumbled over there."""
         known = {*self.misplaced, *(place for place, _ in self.problems)}
         above = {place[:k] for place in known for k in range(len(place))}
-        for line in (line for line in str(error).split("\n") if UNREAD not in line):
+        lines = str(error).split("\n")
+        for line in [line for line in lines if PROBLEM.match(line)] if self.problems else lines:
             path = re.findall(r"^[\w.\[\]]*", line)[0].rstrip(".")
             keys = tuple(int(key) - 1 if key.isdigit() else key for key in re.findall(r"\w+", path))
             place = (*where, *keys) if where or {*keys[:1]} <= {*self.top} else ("mechanism", *keys)
