@@ -124,9 +124,10 @@ def test_problems_have_line_and_path(old, new, problem):
     assert any(line.startswith(problem) for line in lines), lines
 
 
-@pytest.mark.parametrize(
-    ("old", "new"), [("guides.slide", "guide.slide"), ("E on slide", "E on slid"), ('"-90 deg"', '"-90deg"')]
-)
+SLIPS = {"guides.slide": "guide.slide", "E on slide": "E on slid", '"-90 deg"': '"-90deg"', "A = [0, 0]": "A = [0]"}
+
+
+@pytest.mark.parametrize(("old", "new"), SLIPS.items())
 def test_only_the_cause_is_reported(old, new):
     assert len(problems(old, new)) == 1
 
