@@ -7,6 +7,7 @@ Arcs between toggles: `linksweep.results.peak_search.arcs`.
 
 from __future__ import annotations
 
+import math
 from functools import singledispatch
 from typing import Any, NamedTuple
 
@@ -225,7 +226,8 @@ def approach_samples(group: Group, angles: Array | None = None) -> Array:
     if not group.scene.approaches():
         return np.empty((designs, 0))
     close = _approaches(group) if angles is None else approaches(group, angles, ends_meet=False)
-    return by_row(close.row, close.samples(), designs).reshape(designs, -1)
+    close_by = by_row(close.row, close.samples(), designs)
+    return close_by.reshape(designs, math.prod(close_by.shape[1:]))  # of no design, too
 
 
 def _approaches(group: Group) -> Approaches:

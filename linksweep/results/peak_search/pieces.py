@@ -254,6 +254,8 @@ def between(cuts: Array, last: Array, designs: int) -> Pieces:
 def _cut_at_zeros(group: Group, pieces: Pieces, name: str, half: int, threads: int | None) -> Pieces:
     """Return the pieces, cut at the zeros of a quantity."""
     request, inputs = _evaluated(group, pieces, (name,))
+    if group.scene.mechanism.index not in request.outputs[name].dims:  # as the force on a guide that bears nothing
+        return pieces
     tangent, far = zeros_of_pieces(request, inputs, ONE, pieces.counts, half, threads)
     zeros = np.nonzero(np.isfinite(tangent))
     if not len(zeros[0]):

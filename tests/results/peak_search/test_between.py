@@ -9,6 +9,7 @@ from refusals import refusal
 
 import linksweep as ls
 from linksweep.cli.main import main
+from linksweep.scene.parameters import replaced
 
 FREE = ls.FourBar(*(ls.Link(length, 0.0, 0.0) for length in (0.08, 0.22, 0.18)), ground=0.2)
 WAVE = ls.Scene(
@@ -102,6 +103,15 @@ def test_the_status_is_that_of_the_part(machine):
         assert (int(ds.status), int(ds.F32_peak_at_end)) == (status, flag)
         assert np.isnan(ds.F32_peak) == (status == 2)
     assert int(ls.peaks(scene, of=["theta4"], between=(60.0, 100.0)).status) == 1
+
+
+def test_a_part_in_which_no_design_closes_has_no_peak_with_a_spring_either():
+    wipers = ls.example("wipers")
+    long = replaced(wipers, {"crank.length": 0.4})
+    sprung = replace(long, loads=[ls.Spring(("ground", 0.1, 0.1), ("rod", 0.05, 20.0), 100.0, 0.05)])
+    ds = ls.peaks(sprung, of=["F12", "F12_mean"], between=(10.0, 40.0))
+    assert np.isnan([ds.F12_peak, ds.F12_peak_at, ds.F12_mean]).all()
+    assert ds.status.attrs["flag_meanings"].split()[int(ds.status)] == "cannot_assemble"
 
 
 def test_the_command_prints_the_peaks_of_a_part(capsys):

@@ -16,6 +16,7 @@ from linksweep.engine.peaks.turns import EVALUATIONS, ROOM, STATE_ROWS
 from linksweep.physics.closures.crank_angle import place_on_piece
 from linksweep.results.peak_search import pieces
 from linksweep.results.peak_search.groups import groups
+from linksweep.scene.parameters import replaced
 
 DESIGNS = 12
 FORCES = ("F12", "F32", "F43", "F14", "T12")
@@ -41,6 +42,16 @@ def inverted() -> ls.Scene:
         crank, rocker, 0.2, 0.3, 1e-4, numbers(3, -0.03, 0.03), friction=numbers(4, 0.0, 0.3)
     )
     return ls.Scene(mechanism, 20.0, gravity=(0.0, -9.81), loads=[ls.Load("rocker", torque=numbers(5, -9.0, 9.0))])
+
+
+def test_a_guide_that_bears_nothing_at_any_angle_has_no_kinks():
+    """A weightless ram and rod, without load: neither the normal force nor the friction changes with the angle."""
+    light = dict.fromkeys(("lower.mass", "lower.inertia", "ram.mass"), 0.0)
+    press = replaced(replace(ls.example("knuckle-press"), loads=[]), light)
+    free = replaced(press, {"guides.slide.friction": 0.0})
+    peaks, dense = ls.peaks(press, of=["F16n", "F32"]), ls.peaks(free, of=["F32"], theta2=3600)
+    assert float(peaks.F16n_peak) == 0.0
+    assert float(peaks.F32_peak) == pytest.approx(float(dense.F32_peak), rel=1e-5)
 
 
 @pytest.mark.parametrize("scene", [engines(branch="crossed"), inverted()])
