@@ -221,6 +221,5 @@ class Instructions:
 
     def _atan2(self, y: Any, x: Any) -> Any:
         """Write the operations of `engine.trace.arctangent`: there is no instruction."""
-        traced = traced_arctangent()
-        values = interpret([*traced.constants, *traced.instructions], {traced.y: y, traced.x: x}, self.operators)
-        return values[traced.instructions[-1]]
+        inputs, nodes, (angle,) = traced_arctangent()
+        return interpret(nodes, dict(zip(inputs, (y, x), strict=True)), self.operators)[angle]

@@ -26,7 +26,7 @@ from functools import cached_property
 
 from linksweep.engine.kernel.ahead import done_ahead
 from linksweep.engine.kernel.pipeline import Pipeline, pipeline
-from linksweep.engine.trace.graph import Node
+from linksweep.engine.trace.graph import Node, in_order, leading_to
 from linksweep.engine.trace.plan import Plan
 
 ARGUMENTS = (
@@ -87,7 +87,7 @@ class Writer:
             for x in node.operands
             if self.per_sample(x) and x.operator != "input" and self.level(x) < self.level(node)
         }
-        return sorted(read_back | signals, key=lambda node: node.position)
+        return in_order(read_back | signals)
 
     @property
     def unit(self) -> int:
@@ -179,7 +179,7 @@ class Writer:
 
     def _read_singles(self, nodes: Iterable[Node], depth: int = 1) -> None:
         """Write the lines that read those of the nodes which depend on no angle."""
-        for node in _in_order(nodes):
+        for node in in_order(nodes):
             if node in self.values or node in self.parameters:
                 self._define(depth, node, self._single(node))
 
@@ -205,7 +205,7 @@ class Writer:
             return
         if ahead := done_ahead(work):
             work = [node for node in work if node not in set(ahead)]
-            kept = _in_order({*operands(work), *written} & set(ahead))
+            kept = in_order({*operands(work), *written} & set(ahead))
             before, names = set(self.known), [self.name(node) for node in kept]
             self._line(1, "def start(j):")
             self._operations(2, ahead)
@@ -243,7 +243,7 @@ class Writer:
 
     def _operations(self, depth: int, work: list[Node], written: Iterable[Node] = ()) -> None:
         """Write operations on samples, what they read, and where it is to be stored."""
-        for node in _in_order({*written, *operands(work), *work}):
+        for node in in_order({*written, *operands(work), *work}):
             if self.per_sample(node) and self.name(node) not in self.known:
                 self._define(depth, node, self._expression(node) if node in work else self._sample(node))
             for cell in self._cells(node) if node in written else ():
@@ -251,14 +251,7 @@ class Writer:
 
     def _needed(self, rows: Iterable[Node]) -> list[Node]:
         """Return all operations per sample on which rows depend, of every level."""
-        needed: set[Node] = set()
-        waiting = list(rows)
-        while waiting:
-            node = waiting.pop()
-            if node not in needed and self.per_sample(node) and node.operands:
-                needed.add(node)
-                waiting.extend(node.operands)
-        return _in_order(needed)
+        return [node for node in leading_to(rows) if self.per_sample(node) and node.operands]
 
     @property
     def number(self) -> str:
@@ -319,7 +312,3 @@ class Writer:
 
 def operands(nodes: Iterable[Node]) -> set[Node]:
     return {x for node in nodes for x in node.operands}
-
-
-def _in_order(nodes: Iterable[Node]) -> list[Node]:
-    return sorted(nodes, key=lambda node: node.position)

@@ -40,7 +40,7 @@ from linksweep.engine.patience import Patience
 from linksweep.engine.peaks.interpreted import Interpreted
 from linksweep.engine.peaks.lanewise import Values
 from linksweep.engine.peaks.samples import HALF, PLACED
-from linksweep.engine.trace.graph import Node
+from linksweep.engine.trace.graph import Node, in_order, leading_to
 from linksweep.engine.trace.operators import interpret
 from linksweep.engine.trace.parity import parities
 from linksweep.engine.trace.plan import Plan
@@ -110,7 +110,7 @@ class Evaluators(Patience):
         read = {x for node in self.of_designs if PIECE in node.dims for x in node.operands}
         used |= {x for x in read if x.operator != "constant" and PIECE not in x.dims}
         widths = [plan.outputs[NEAR_WIDTH], plan.outputs[FAR_WIDTH]]
-        self.constants = [*widths, *sorted(used, key=lambda node: node.position)]
+        self.constants = [*widths, *in_order(used)]
         self.fixed = [node for node in plan.nodes if node.operator == "constant"]
         self.ahead = self._needed([node for node in self.at_samples if node.operator in SLOW and self.parity[node]])
         """Operations at a place that lead to divisions and roots, which the place shares with its mirror."""
@@ -120,7 +120,7 @@ class Evaluators(Patience):
         self.own = [node for node in self.at_samples if node not in of_all]
         """The operations at samples that each design does for itself."""
         used = {x for node in self.own for x in node.operands} & of_all
-        self.shared = sorted(used, key=lambda node: node.position)
+        self.shared = in_order(used)
         """The values that those take from what all designs have in common."""
         used |= {x for node in self.left for x in node.operands} | set(self.signals)
         self.kept = [node for node in [self.tangent, self.far, *self.ahead] if node in used]
@@ -140,10 +140,7 @@ class Evaluators(Patience):
 
     def _needed(self, nodes: list[Node]) -> list[Node]:
         """Return the operations at samples that lead to some of them, and these themselves."""
-        needed = set(nodes)
-        for node in reversed(self.at_samples):
-            needed.update(node.operands if node in needed else ())
-        return [node for node in self.at_samples if node in needed]
+        return [node for node in leading_to(nodes) if self._turns(node) and node.operands]
 
     @cached_property
     def interpreted(self) -> Functions:

@@ -14,8 +14,8 @@ from linksweep.engine.kernel.instructions import REGISTER as LANES
 from linksweep.engine.kernel.instructions import Instructions
 from linksweep.engine.kernel.machine_code import INTEGER, ROW, TABLE, MachineCode, machine_code
 from linksweep.engine.kernel.translate import written_by
-from linksweep.engine.trace.graph import Graph, Node
-from linksweep.engine.trace.operators import OPERATORS, interpret
+from linksweep.engine.trace.graph import Node
+from linksweep.engine.trace.operators import OPERATORS, Traced, interpret, traced
 
 Values = dict[Node, Any]
 """Values of nodes: numbers, arrays, or instructions that compute vectors."""
@@ -36,30 +36,13 @@ class Lanewise:
         self.function, self.rows, self.outputs = function, inputs, outputs
 
     @cached_property
-    def traced(self) -> tuple[list[Node], list[Node]]:
-        """The operations and the results of the function."""
-        graph = Graph()
-        inputs = [graph.input(f"row {k}", ("lane",)) for k in range(len(self.rows))]
-        results = [graph.node(result) for result in self.function(*inputs)]
-        return graph.nodes, results
-
-    @property
-    def inputs(self) -> list[Node]:
-        return self.traced[0][: len(self.rows)]
-
-    @property
-    def nodes(self) -> list[Node]:
-        return self.traced[0][len(self.rows) :]
-
-    @property
-    def results(self) -> list[Node]:
-        return self.traced[1]
+    def traced(self) -> Traced:
+        return traced(self.function, len(self.rows))
 
     def __call__(self, table: np.ndarray, *bounds: int) -> None:
-        columns = slice(*bounds)
-        inputs = (table[row, columns].copy() for row in self.rows)
-        values = interpret(self.nodes, dict(zip(self.inputs, inputs, strict=True)))
-        for row, node in zip(self.outputs, self.results, strict=True):
+        (inputs, nodes, results), columns = self.traced, slice(*bounds)
+        values = interpret(nodes, {x: table[row, columns].copy() for x, row in zip(inputs, self.rows, strict=True)})
+        for row, node in zip(self.outputs, results, strict=True):
             table[row, columns] = values[node]
 
     def compiled(self) -> MachineCode:
@@ -69,17 +52,18 @@ class Lanewise:
     @property
     def text(self) -> str:
         """A text that differs wherever the function does."""
-        place = {node: k for k, node in enumerate([*self.inputs, *self.nodes])}
-        lines = [(node.operator, node.value, [place[x] for x in node.operands]) for node in self.nodes]
-        return f"{SOURCE} {self.rows} {self.outputs} {lines} {[place[node] for node in self.results]}"
+        inputs, nodes, results = self.traced
+        place = {node: k for k, node in enumerate([*inputs, *nodes])}
+        lines = [(node.operator, node.value, [place[x] for x in node.operands]) for node in nodes]
+        return f"{SOURCE} {self.rows} {self.outputs} {lines} {[place[node] for node in results]}"
 
     def emit(self, builder: Any, table: Any, *bounds: Any) -> None:
-        vectors = Instructions(builder)
+        vectors, (inputs, nodes, results) = Instructions(builder), self.traced
         first, last = (vectors.integer(0), *bounds)[-2:]
         with vectors.loop(first, last, LANES) as (k, _):
             loaded = [vectors.load(table.data, _place(vectors, table, row, k)) for row in self.rows]
-            values = interpret(self.nodes, dict(zip(self.inputs, loaded, strict=True)), vectors.operators)
-            self._store(vectors, table, k, [values[node] for node in self.results])
+            values = interpret(nodes, dict(zip(inputs, loaded, strict=True)), vectors.operators)
+            self._store(vectors, table, k, [values[node] for node in results])
 
     def _store(self, vectors: Instructions, table: Any, k: Any, values: list[Any]) -> None:
         for row, value in zip(self.outputs, values, strict=True):
@@ -117,28 +101,29 @@ class Around(Lanewise):
     @cached_property
     def of_samples(self) -> list[Node]:
         """The nodes that depend on samples alone."""
-        known = set(self.inputs[:5])
-        for node in self.nodes:
+        known = set(self.traced.inputs[:5])
+        for node in self.traced.nodes:
             known.update({node} if known.issuperset(node.operands) else ())
-        return [node for node in self.nodes if node in known]
+        return [node for node in self.traced.nodes if node in known]
 
     def __call__(self, samples: np.ndarray, count: int, table: np.ndarray, columns: int) -> None:  # type: ignore[override]
+        inputs, nodes, results = self.traced
         first, second = samples[: count * columns].reshape(-1, 2, columns).swapaxes(0, 1)
         number = np.arange(0.0, count, 2.0)[:, None]
         around = np.roll(second, 1, axis=0), first, second, np.roll(first, -1, axis=0), number
-        every = interpret(self.of_samples, dict(zip(self.inputs, around, strict=False)))
+        every = interpret(self.of_samples, dict(zip(inputs, around, strict=False)))
         now: tuple[Any, ...] = self.start
-        running = [(OPERATORS[node.operator], node) for node in self.nodes if node not in every]
+        running = [(OPERATORS[node.operator], node) for node in nodes if node not in every]
         used = {x for _, node in running for x in node.operands if x in every}
         samplewise = {node: np.broadcast_to(every[node], first.shape) for node in used}
         values: Values = {}
         with np.errstate(all="ignore"):
             for j in range(count // 2):
                 values.update({node: value[j] for node, value in samplewise.items()})
-                values.update(zip(self.inputs[5:], now, strict=True))
+                values.update(zip(inputs[5:], now, strict=True))
                 for function, node in running:
                     values[node] = function(*[values[x] for x in node.operands])
-                now = tuple(values[node] for node in self.results)
+                now = tuple(values[node] for node in results)
         for k, value in zip(self.outputs, now, strict=True):
             table[k, :columns] = value
 
@@ -150,11 +135,11 @@ class Around(Lanewise):
         return machine_code(self.emit, (ROW, INTEGER, TABLE, INTEGER), self.text)
 
     def emit(self, builder: Any, samples: Any, count: Any, table: Any, columns: Any) -> None:  # type: ignore[override]
-        vectors = Instructions(builder)
+        vectors, (inputs, nodes, results) = Instructions(builder), self.traced
         none, one, two = (vectors.integer(k) for k in range(3))
         last, latest = builder.sub(count, one), builder.sub(columns, vectors.integer(LANES))
         start = [vectors.wide(vectors.double(number)) for number in self.start]
-        carried = [*self.inputs[:2], *self.inputs[5:]]
+        carried = [*inputs[:2], *inputs[5:]]
 
         def sample(j: Any, k: Any) -> Any:
             return vectors.load(samples.data, builder.add(builder.mul(columns, j), k))
@@ -170,9 +155,9 @@ class Around(Lanewise):
                 for k, cells in zip(blocks, running, strict=True):
                     values = dict(zip(carried, map(builder.load, cells), strict=True))
                     new = sample(second, k), sample(after, k)
-                    values |= dict(zip(self.inputs[2:5], (*new, number), strict=True))
-                    interpret(self.nodes, values, vectors.operators)
-                    for value, cell in zip((*new, *(values[node] for node in self.results)), cells, strict=True):
+                    values |= dict(zip(inputs[2:5], (*new, number), strict=True))
+                    interpret(nodes, values, vectors.operators)
+                    for value, cell in zip((*new, *(values[node] for node in results)), cells, strict=True):
                         builder.store(value, cell)
             for k, cells in zip(blocks, running, strict=True):
                 self._store(vectors, table, k, [*map(builder.load, cells[2:])])

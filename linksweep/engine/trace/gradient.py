@@ -20,7 +20,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Callable, Collection, Iterable
 
-from linksweep.engine.trace.graph import LOW_WORDS, Node
+from linksweep.engine.trace.graph import LOW_WORDS, Node, leading_to
 
 Conditions = frozenset[tuple[Node, bool]]
 """Conditions that hold together, each with the outcome that it must have."""
@@ -45,7 +45,7 @@ PASSED_ON: dict[str, Callable[..., tuple[Node, ...]]] = {
 
 def gradient(value: Node, to: Collection[Node]) -> dict[Node, Node]:
     """Return the derivatives of a value to those of these inputs on which it depends."""
-    operations = _operations(value)
+    operations = leading_to([value])
     active = _active(operations, frozenset(to))
     received: dict[Node, list[tuple[Mask, Node]]] = defaultdict(list)
     received[value].append((ALWAYS, value.graph.constant(1.0)))
@@ -57,16 +57,6 @@ def gradient(value: Node, to: Collection[Node]) -> dict[Node, Node]:
             if x in active:
                 received[x].append((own, passed))
     return {x: _selected(*_joined(received[x])) for x in to if x in received}
-
-
-def _operations(value: Node) -> list[Node]:
-    """Return all nodes on which a value depends, and itself, in order."""
-    known, waiting = {value}, [value]
-    while waiting:
-        others = set(waiting.pop().operands) - known
-        known |= others
-        waiting.extend(others)
-    return sorted(known, key=lambda node: node.position)
 
 
 def _active(operations: Iterable[Node], to: frozenset[Node]) -> set[Node]:

@@ -8,7 +8,7 @@ equal bits.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 COMMUTATIVE = {"+", "*", "sum_low", "product_low"}
 LOW_WORDS = {"sum_low": "+", "difference_low": "-", "ordered_low": "+", "product_low": "*"}
@@ -202,6 +202,22 @@ class Graph:
         if x.operator == "negate":
             return x.operands[0]
         return self.operation("negate", x)
+
+
+def in_order(nodes: Iterable[Node]) -> list[Node]:
+    """Return nodes in the order in which they were traced."""
+    return sorted(nodes, key=lambda node: node.position)
+
+
+def leading_to(nodes: Iterable[Node]) -> list[Node]:
+    """Return nodes and all on which they depend, in order."""
+    known, waiting = set[Node](), [*nodes]
+    while waiting:
+        node = waiting.pop()
+        if node not in known:
+            known.add(node)
+            waiting.extend(node.operands)
+    return in_order(known)
 
 
 def _key(operator: str, operands: tuple[Node, ...], value: object) -> tuple[str, tuple[int, ...], object]:

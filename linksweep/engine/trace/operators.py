@@ -40,20 +40,23 @@ def interpret(nodes: Iterable[Node], values: dict[Node, Any], operators=OPERATOR
     return values
 
 
-class Arctangent(NamedTuple):
-    """The operations of an arctangent: constants first, then instructions, the last of which gives the angle."""
+class Traced(NamedTuple):
+    """A function as a graph: its inputs, its constants and operations in order, and its results."""
 
-    y: Node
-    x: Node
-    constants: list[Node]
-    instructions: list[Node]
+    inputs: list[Node]
+    nodes: list[Node]
+    results: list[Node]
+
+
+def traced(function: Callable[..., Iterable[Node | float]], count: int) -> Traced:
+    """Trace a function of so many numbers."""
+    graph = Graph()
+    inputs = [graph.input(f"input {k}", ()) for k in range(count)]
+    results = [graph.node(result) for result in function(*inputs)]
+    return Traced(inputs, graph.nodes[count:], results)
 
 
 @cache
-def traced_arctangent() -> Arctangent:
-    """Return the arctangent as traced operations."""
-    graph = Graph()
-    y, x = graph.input("y", ()), graph.input("x", ())
-    arctangent(y, x, Node.where)
-    constants = [node for node in graph.nodes if node.operator == "constant"]
-    return Arctangent(y, x, constants, [node for node in graph.nodes if node.operands])
+def traced_arctangent() -> Traced:
+    """Return the arctangent of y and x as traced operations."""
+    return traced(lambda y, x: [arctangent(y, x, Node.where)], 2)

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
 from linksweep.engine.quantity import Row, Table, Total
-from linksweep.engine.trace.graph import Graph, Node
+from linksweep.engine.trace.graph import Graph, Node, in_order, leading_to
 from linksweep.engine.trace.operators import traced_arctangent
 
 INSTRUCTIONS = {"sum_low": 5, "difference_low": 5, "ordered_low": 2}
@@ -24,7 +24,9 @@ LOW_WORD = "_lo"
 
 def instructions(operator: str) -> int:
     """Return how many instructions an operation takes."""
-    return len(traced_arctangent().instructions) if operator == "atan2" else INSTRUCTIONS.get(operator, 1)
+    if operator == "atan2":
+        return sum(1 for node in traced_arctangent().nodes if node.operands)
+    return INSTRUCTIONS.get(operator, 1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,14 +40,7 @@ class Plan:
 
     @cached_property
     def nodes(self) -> tuple[Node, ...]:
-        alive: set[Node] = set()
-        waiting = list(self.outputs.values())
-        while waiting:
-            node = waiting.pop()
-            if node not in alive:
-                alive.add(node)
-                waiting.extend(node.operands)
-        return tuple(sorted(alive, key=lambda node: node.position))
+        return tuple(leading_to(self.outputs.values()))
 
     @cached_property
     def input_nodes(self) -> tuple[Node, ...]:
@@ -75,8 +70,7 @@ class Plan:
     @cached_property
     def stored(self) -> tuple[Node, ...]:
         """Return the nodes that are outputs, but constants."""
-        nodes = {node for node in self.outputs.values() if node.operator != "constant"}
-        return tuple(sorted(nodes, key=lambda node: node.position))
+        return tuple(in_order({node for node in self.outputs.values() if node.operator != "constant"}))
 
     def operations(self, *dims: str) -> Counter:
         """Return how many operations of each kind are done once per sample of these dims (no dims: once in all)."""
@@ -119,7 +113,7 @@ def plan(table: Table, request: tuple[str, ...], inputs: InputForms) -> Plan:
     for name in request:
         _trace(name, table, graph, values, made_by)
     outputs = {name: values[name] for name in request}
-    alive = {node.position for node in Plan(table.index, outputs, ()).nodes}
+    alive = {node.position for node in leading_to(outputs.values())}
     functions = tuple(name for name, made in made_by.items() if not alive.isdisjoint(made))
     return Plan(table.index, outputs, functions)
 
