@@ -31,7 +31,7 @@ def conditions(x, k, result):
         value = x[j]
         result[j, 0] = 1.0 if value < 0.0 else 2.0 if value == 0.0 else 3
         result[j, 1] = value <= 0.0 or (value > 2.0 and not k > 1)
-        result[j, 2] = (value >= 1.0) | (value != value) & (k > 1)
+        result[j, 2] = value >= 1.0 or (value != value and k > 1)
         result[j, 3] = -1.0 < value <= 1.0
         result[j, 4] = not k or (j == 2) == (value < 0.5)
         if k and j:

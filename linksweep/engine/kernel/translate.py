@@ -276,9 +276,6 @@ class Translator(Values):
         return self._arithmetic(node, self._value(node.left), self._value(node.right))
 
     def _arithmetic(self, node: ast.BinOp | ast.AugAssign, x: Any, y: Any) -> Any:
-        if isinstance(node.op, ast.BitOr | ast.BitAnd):
-            combine = self.builder.or_ if isinstance(node.op, ast.BitOr) else self.builder.and_
-            return combine(*(self.converted(self.write.condition, z) for z in (x, y)))
         return self.arithmetic(type(node.op), x, y) if type(node.op) in ARITHMETIC else self._refuse(node)
 
     def _compare(self, node: ast.Compare) -> Any:

@@ -14,7 +14,7 @@ import numpy as np
 
 from linksweep.engine.kernel.machine_code import INTEGER, INTEGERS, TABLE
 from linksweep.engine.peaks import brackets
-from linksweep.engine.peaks.brackets import BEYOND, BLOCK, PEAK, PEAK_X, in_blocks, open_bracket
+from linksweep.engine.peaks.brackets import BEYOND, PEAK, PEAK_X, open_bracket
 from linksweep.engine.peaks.laid_out import compiled
 from linksweep.engine.peaks.summits import might_reach, noise
 
@@ -40,8 +40,8 @@ def open_brackets(rows: Array, x: Array, before: Array, after: Array, joined: bo
     tells whether the ends of a path meet.
     """
     run: Callable = compiled(open_on_paths, OF_PATHS) if rows.size > INTERPRETED_SAMPLES else open_on_paths
-    arrays, flags = map(np.ascontiguousarray, (rows, x, before, after)), np.zeros(in_blocks(x.shape[1]), dtype=np.int64)
-    return run(*arrays, joined, table, best, flags)
+    arrays, places = map(np.ascontiguousarray, (rows, x, before, after)), np.empty(x.shape[1], dtype=np.int64)
+    return run(*arrays, joined, table, best, places)
 
 
 def refine(samples: int, table: Array, count: int, best: Array, values: Values) -> None:
@@ -69,27 +69,27 @@ def _compiled_steps() -> tuple[Callable, Callable, Callable]:
 # ------------------------------------------------------------------ plain Python that is translated to machine code
 
 
-def open_on_paths(rows, x, before, after, joined, brackets, best, flags):
+def open_on_paths(rows, x, before, after, joined, brackets, best, places):
     """Open the brackets of all signals on all paths: rows (path, signal, sample), tagged path by path."""
     count = 0
     paths, signals = rows.shape[:2]
     for path in range(paths):
         for k in range(signals):
             where = x[path], before[path], after[path]
-            count = open_on_path(rows[path, k], *where, joined, path * signals + k, brackets, count, best, flags)
+            count = open_on_path(rows[path, k], *where, joined, path * signals + k, brackets, count, best, places)
     return count
 
 
-def open_on_path(row, x, before, after, joined, tag, brackets, count, best, flags):
+def open_on_path(row, x, before, after, joined, tag, brackets, count, best, places):
     """Note a signal's largest sample and open a bracket at each that could lead higher; return their number.
 
     `joined` tells whether the path's ends meet; `before` and `after` are the places of the samples' neighbours.
     """
     n = len(row)
-    summits = find_summits(row, joined, flags)
+    summits = find_summits(row, joined, places)
     top, at = -math.inf, 0
     for k in range(summits if summits else n):  # a flat or falling signal has no summit
-        j = flags[k] if summits else k
+        j = places[k] if summits else k
         if row[j] > top:
             top, at = row[j], j
     around_top = neighbour(row, at, -1, joined), top, neighbour(row, at, 1, joined)
@@ -98,7 +98,7 @@ def open_on_path(row, x, before, after, joined, tag, brackets, count, best, flag
     if abs(top) == math.inf:
         return count
     for k in range(summits):
-        j = flags[k]
+        j = places[k]
         first = last = j
         while first > 0 and x[first - 1] == x[j]:
             first -= 1
@@ -118,26 +118,13 @@ def open_on_path(row, x, before, after, joined, tag, brackets, count, best, flag
     return count
 
 
-def find_summits(row, joined, flags):
-    """Write the positions of all samples that exceed their neighbours to `flags`; return their number."""
-    n, summits = len(row), 0
-    for j in range(1, n - 1):
-        below = (row[j] < row[j - 1]) | (row[j] <= row[j + 1]) | (row[j] != row[j])  # a NaN is below, and none above
-        flags[j] = 0 if below else 1
-    for j in (0, n - 1):
-        stands = row[j] >= neighbour(row, j, -1, joined) and row[j] > neighbour(row, j, 1, joined)
-        flags[j] = 1 if stands else 0
-    for j in range(n, in_blocks(n)):
-        flags[j] = 0
-    for start in range(0, n, BLOCK):
-        total = 0
-        for k in range(BLOCK):
-            total += flags[start + k]
-        if total > 0:
-            for j in range(start, start + BLOCK):
-                more = flags[j]
-                flags[summits] = j  # without a branch: it would often be mispredicted
-                summits += more
+def find_summits(row, joined, places):
+    """Write the positions of all samples that exceed their neighbours to `places`; return their number."""
+    summits = 0
+    for j in range(len(row)):
+        if row[j] >= neighbour(row, j, -1, joined) and row[j] > neighbour(row, j, 1, joined):
+            places[summits] = j
+            summits += 1
     return summits
 
 
