@@ -101,12 +101,17 @@ class Layout(NamedTuple):
 class Runner(Patience):
     """One plan ready to run."""
 
-    plan: Plan
+    traced: Plan
     reductions: tuple[Reduction, ...]
     layouts: dict[tuple[int, ...], Layout] = field(default_factory=dict)
     writers: dict[tuple[int, ...], Writer] = field(default_factory=dict)
     latest: tuple[np.ndarray | None, tuple[int, ...]] = (None, ())
     """Profiles of the latest run, often the table of a grid that is kept, and their parities."""
+
+    @cached_property
+    def plan(self) -> Plan:
+        """The plan as kernels follow it."""
+        return self.traced.with_arctangents_expanded()
 
     @cached_property
     def fused(self) -> Writer:
@@ -159,8 +164,8 @@ def evaluate(plan: Plan, inputs: Fields, grid: Grid, sizes: Sizes, threads: int 
     block, single = _execute(ready, inputs, grid, sizes, threads)
     stored = {slot.node: _rows_of(slot, block, grid) for slot in layout.rows}
     stored |= {slot.node: single_of(slot, single) for slot in layout.singles}
-    stored |= {node: Field((), np.asarray(node.value)) for node in plan.constants}
-    return {name: stored[node] for name, node in plan.outputs.items()}
+    stored |= {node: Field((), np.asarray(node.value)) for node in ready.plan.constants}
+    return {name: stored[node] for name, node in ready.plan.outputs.items()}
 
 
 def reduce_rows(

@@ -26,7 +26,7 @@ def in_python(monkeypatch):
 
     def kernel(source: str, *_):
         namespace = vars(reduce) | OPERATORS | {"number": np.float64, "math": math}
-        namespace |= {"in_vectors": whole_row, "in_vectors_ahead": whole_row}
+        namespace |= {"in_vectors": whole_row, "in_stages": whole_rows, "places": Waiting, "memory": Waiting}
         namespace["vectorised"] = lambda function: function
         exec(source, namespace)
         return namespace["kernel"]
@@ -42,9 +42,23 @@ def in_python(monkeypatch):
         made.cache_clear()
 
 
-def whole_row(first, last, samples, start=None):
-    row = slice(first, last)
-    return [(row, *start(row))] if start else [row]
+def whole_row(first, last, samples):
+    return [slice(first, last)]
+
+
+def whole_rows(first, last, samples, stages):
+    """The row goes through all stages, after rows that were never begun."""
+    return [whole_row(first, last, samples) * stages] * stages
+
+
+class Waiting(dict):
+    """Numbers that wait, all of the same row; NaN of rows that were never begun."""
+
+    def __init__(self, *sizes):
+        super().__init__()
+
+    def __getitem__(self, place):
+        return self.get(place[0] if isinstance(place, tuple) else place, math.nan)
 
 
 def over(random, sizes: dict[str, int]) -> xr.DataArray:

@@ -1,14 +1,14 @@
-"""Order the operations of a long loop over samples so that several vectors are under way at once.
+"""Order the operations of a loop over samples so that several vectors are under way at once.
 
-A processor looks a few hundred instructions ahead. In a longer loop it meets stretches whose operations all wait for
-each other, with none to do meanwhile. So each pass does the last operations of one vector between earlier ones of the
-next vectors, as in modulo scheduling (B. R. Rau, Iterative Modulo Scheduling, 1994): each operation is done as late as
-those that need it allow, in a cycle that its unit has free in every pass.
+A processor looks a few hundred instructions ahead, and meets stretches whose operations all wait for each other, or for
+a division or a root, with none to do meanwhile. So each pass does the last operations of one vector between earlier
+ones of the next vectors, as in modulo scheduling (B. R. Rau, Iterative Modulo Scheduling, 1994): each operation is done
+as late as those that need it allow, in a cycle that its unit has free in every pass.
 """
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import count, islice
 from typing import NamedTuple
@@ -17,17 +17,25 @@ from linksweep.engine.kernel.waiting import Gap, gaps, in_memory
 from linksweep.engine.trace.graph import Node
 from linksweep.engine.trace.plan import instructions
 
-LEAST = 301
-"""Operations of the shortest loops that it is for: most take 0.7 to 0.93 of the time (AMD Zen 4)."""
+LEAST = 60
+"""Operations of the shortest loops that it is for: most take 0.75 to 1.0 of the time (AMD Zen 4), shorter ones more."""
 ROOM = 1.1
 """Cycles of a pass, as a multiple of those in which the busiest unit is busy."""
-ANY, ADDER, MULTIPLIER = "any", "adder", "multiplier"
-UNITS = dict.fromkeys(("negate", "abs", "where"), ANY) | dict.fromkeys(("*", "product_low", "/", "sqrt"), MULTIPLIER)
-"""Units of the operations that do not add."""
-LATENCY = {ANY: 1, ADDER: 5, MULTIPLIER: 5, "/": 16, "sqrt": 24, "sum_low": 20, "difference_low": 20, "ordered_low": 10}
-"""Cycles after which the results of units, or of single operations, are there, with some to spare."""
-CYCLES = {"/": 3, "sqrt": 2}
-"""Cycles that operations take from others of their unit; all others take one for each instruction."""
+UNITS = ADDER, MULTIPLIER, DIVIDER = "adder", "multiplier", "divider"
+CYCLES: Mapping[str, Mapping[str, int]] = {
+    "negate": {},
+    "abs": {},
+    "where": {},
+    "*": {MULTIPLIER: 1},
+    "product_low": {MULTIPLIER: 1},
+    "/": {MULTIPLIER: 3, DIVIDER: 9},
+    "sqrt": {MULTIPLIER: 2, DIVIDER: 16},
+}
+"""Cycles that operations keep units busy (AMD Zen 4); all others keep the adder busy, a cycle for each instruction."""
+LATENCY = dict.fromkeys(("negate", "abs", "where"), 1) | {
+    "/": 16, "sqrt": 24, "sum_low": 20, "difference_low": 20, "ordered_low": 10
+}  # fmt: skip
+"""Cycles after which the results of operations are there, with some to spare; of all others after five."""
 
 
 class Place(NamedTuple):
@@ -81,9 +89,9 @@ def _places(waiting: Iterable[Gap], start: Mapping[Node, int], length: int) -> d
 
 def busy(work: Iterable[Node]) -> dict[str, int]:
     """Return for how many cycles operations on one vector keep each unit busy: no loop is faster."""
-    cycles = {ADDER: 0, MULTIPLIER: 0, ANY: 0}
+    cycles = Counter(dict.fromkeys(UNITS, 0))
     for node in work:
-        cycles[_unit(node)] += _cycles(node)
+        cycles.update(_cycles(node))
     return cycles
 
 
@@ -96,28 +104,24 @@ def _schedule(work: Sequence[Node]) -> tuple[int, dict[Node, int]]:
         way[node] = max((way[x] + _latency(x) for x in before), default=0)
         for x in before:
             followers[x].append(node)
-    length = int(ROOM * max(busy(work).values()))
+    length = 1 + int(ROOM * max(busy(work).values()))
     start: dict[Node, int] = {}
-    taken: dict[str, set[int]] = {unit: set() for unit in (ANY, ADDER, MULTIPLIER)}
+    taken: dict[str, set[int]] = {unit: set() for unit in UNITS}
     for node in sorted(work, key=lambda x: (-way[x], -x.position)):  # operands have a shorter way behind them
-        latest = min((start[x] for x in followers[node]), default=0) - _latency(node)
-        in_use = taken[_unit(node)]
-        free = (at for at in count(latest, -1) if at % length not in in_use)
-        cycles = [*islice(free, max(_cycles(node), 1))]
-        start[node] = cycles[-1]
-        in_use.update(at % length for at in cycles if _cycles(node))
+        start[node] = latest = min((start[x] for x in followers[node]), default=0) - _latency(node)
+        for unit, cycles in _cycles(node).items():
+            free = (at for at in count(latest, -1) if at % length not in taken[unit])
+            chosen = [*islice(free, cycles)]
+            start[node] = min(start[node], chosen[-1])
+            taken[unit].update(at % length for at in chosen)
     first = min(start.values())
     return length, {node: at - first for node, at in start.items()}
 
 
-def _unit(node: Node) -> str:
-    return UNITS.get(node.operator, ADDER)
+def _cycles(node: Node) -> Mapping[str, int]:
+    """Return for how many cycles an operation keeps units busy."""
+    return CYCLES.get(node.operator, {ADDER: instructions(node.operator)})
 
 
 def _latency(node: Node) -> int:
-    return LATENCY.get(node.operator, LATENCY[_unit(node)])
-
-
-def _cycles(node: Node) -> int:
-    """Return for how many cycles an operation keeps its unit busy."""
-    return 0 if _unit(node) == ANY else CYCLES.get(node.operator) or instructions(node.operator)
+    return LATENCY.get(node.operator, 5)

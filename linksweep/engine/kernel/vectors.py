@@ -15,17 +15,8 @@ samples side by side as the processor takes: nothing is left to a compiler that 
 last vector of a row ends with the row, and so repeats samples of the vector before it: rows have at least `LANES`
 samples, and no function changes a row that it reads.
 
-Some of the operations may be done one vector ahead of the others, which then wait less for each other:
-
-    def start(j):
-        cos2 = profiles[0, j]
-        x7 = cos2 * x5
-        return (x7,)
-    for j, x7 in in_vectors_ahead(0, samples, samples, start):
-        block[2, j] = x7
-
-Or a pass does the last operations of one vector between earlier ones of others. What is read later is kept until the
-next pass, or it waits in memory, at one of 4 places for 2 vectors each:
+Of a longer loop, a pass does the last operations of one vector between earlier ones of others. What is read later is
+kept until the next pass, or it waits in memory, at one of 4 places for 2 vectors each:
 
     kept, waiting = places(1), memory(4, 2)
     for j0, j1 in in_stages(0, samples, samples, 2):
@@ -60,8 +51,7 @@ from types import FunctionType
 from typing import Any
 
 from linksweep.engine.kernel import instructions, reduce, running, translate
-from linksweep.engine.kernel.ahead import longest_chains_first
-from linksweep.engine.kernel.instructions import REGISTER, Instructions
+from linksweep.engine.kernel.instructions import REGISTER, Instructions, longest_chains_first
 from linksweep.engine.kernel.machine_code import ROW, Array, new_function, processor, write_call
 
 LANES = 2 * REGISTER
@@ -88,7 +78,7 @@ def width() -> int:
 def write_function(builder: Any, function: FunctionType, passed: Mapping[str, Any], streamed: str = "") -> None:
     """Write the instructions of a function of these arguments; rows of the array that is `streamed` are stored past the
     caches."""
-    writer, arguments = _Writer(builder, streams=bool(streamed)), list[Any]()
+    writer, arguments = _Writer(builder), list[Any]()
     for name, llvm in passed.items():
         row = passed.get(ROW_LENGTHS.get(name, "")), name == streamed
         arguments.append(_Array(writer, llvm, *row) if llvm.type.is_pointer else _Value(writer, llvm))
@@ -208,8 +198,7 @@ class _Memory:
 class _Writer:
     """Writer of one function's instructions."""
 
-    def __init__(self, builder: Any, streams: bool) -> None:
-        self.streams = streams
+    def __init__(self, builder: Any) -> None:
         self.builder, self.instructions = builder, Instructions(builder, width())
         _align_stack(builder.function)
         self.head: Any = None
@@ -220,8 +209,8 @@ class _Writer:
     def names(self) -> dict[str, Any]:
         """Return the functions that a function's source may use."""
         operations = {name: partial(self.operation, name) for name in self.instructions.operators}
-        loops = {"in_vectors": self.in_vectors, "in_vectors_ahead": self.in_vectors_ahead, "each": self.each}
-        loops |= {"in_stages": self.in_stages, "places": self.places, "memory": self.memory}
+        loops = {"in_vectors": self.in_vectors, "in_stages": self.in_stages, "each": self.each}
+        loops |= {"places": self.places, "memory": self.memory}
         summaries = {kind: partial(self.summary, function) for kind, function in SUMMARIES.items()}
         return {"math": math, "number": self.number, "running": self.running} | loops | operations | summaries
 
@@ -234,26 +223,6 @@ class _Writer:
         loop = self.instructions.loop(self.integer(first), self.integer(last), self.instructions.width)
         for j, _ in self._inside(loop):
             yield place(j)
-
-    def in_vectors_ahead(
-        self, first: _Value | int, last: _Value | int, samples: _Value | int, start: Callable[[_Value], tuple]
-    ) -> Iterator[tuple]:
-        """Write such a loop, which also yields what `start` returns for the vector.
-
-        With the widest registers each pass starts the next vector, and one register alone need not wait any more. Not
-        so where results are stored past the caches, which takes longer by single lines.
-        """
-        if width() < LANES or self.streams:
-            for j in self.in_vectors(first, last, samples):
-                yield j, *start(j)
-            return
-        self.instructions = Instructions(self.builder, REGISTER)
-        place = self._place_of_vector(samples)
-        loop = self.instructions.loop_ahead(
-            self.integer(first), self.integer(last), REGISTER, lambda j: [x.llvm for x in start(place(j))]
-        )
-        for j, started in self._inside(loop):
-            yield place(j), *(_Value(self, x) for x in started)
 
     def places(self, count: int) -> _Places:
         """Return places for what passes of a loop in stages keep: single registers, as there are many."""

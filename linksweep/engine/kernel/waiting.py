@@ -49,8 +49,9 @@ def gaps(start: Mapping[Node, int]) -> list[Gap]:
 
 def in_memory(gaps: Sequence[Gap], length: int) -> dict[Gap, None]:
     """Return the gaps in which values wait in memory, where a pass of `length` cycles would need too many registers."""
-    held = Counter(cycle % length for gap in gaps for cycle in gap.cycles)
-    others = [gap for gap in gaps if len(gap.cycles) >= SHORTEST]
+    numbers = [gap for gap in gaps if gap.value.operator != "<"]  # conditions have registers of their own
+    held = Counter(cycle % length for gap in numbers for cycle in gap.cycles)
+    others = [gap for gap in numbers if len(gap.cycles) >= SHORTEST]
     chosen, stored = set[Gap](), set[Node]()
     while held and max(held.values()) > REGISTERS:
         fullest = max(held, key=lambda cycle: held[cycle])

@@ -24,7 +24,6 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
-from linksweep.engine.kernel.ahead import done_ahead
 from linksweep.engine.kernel.pipeline import Pipeline, pipeline
 from linksweep.engine.trace.graph import Node, in_order, leading_to
 from linksweep.engine.trace.plan import Plan
@@ -192,7 +191,7 @@ class Writer:
         return self.name(node)
 
     def _sample_loop(self, level: int) -> None:
-        """Write the loop over the samples: in stages, or it may `start` each vector while it ends the one before."""
+        """Write the loop over the samples."""
         written = [node for node in {**dict.fromkeys(self.rows), **self.scratch} if self.level(node) == level]
         if not written:
             return
@@ -202,19 +201,9 @@ class Writer:
         bounds = "0, samples" if self.plan.loops else "first, last"
         if loop := pipeline(work):
             self._in_stages(bounds, loop, {*written})
-            return
-        if ahead := done_ahead(work):
-            work = [node for node in work if node not in set(ahead)]
-            kept = in_order({*operands(work), *written} & set(ahead))
-            before, names = set(self.known), [self.name(node) for node in kept]
-            self._line(1, "def start(j):")
-            self._operations(2, ahead)
-            self._line(2, f"return ({', '.join(names)},)")
-            self.known = before | set(names)
-            self._line(1, f"for j, {', '.join(names)} in in_vectors_ahead({bounds}, samples, start):")
         else:
             self._line(1, f"for j in in_vectors({bounds}, samples):")
-        self._operations(2, work, written)
+            self._operations(2, work, written)
 
     def _in_stages(self, bounds: str, loop: Pipeline, written: set[Node]) -> None:
         """Write a loop whose operations are done in this order, each in its stage of another vector."""

@@ -32,7 +32,6 @@ from functools import cached_property, partial
 from itertools import product
 from typing import Any, NamedTuple
 
-from linksweep.engine.kernel.ahead import SLOW
 from linksweep.engine.kernel.instructions import REGISTER as LANES
 from linksweep.engine.kernel.instructions import Instructions
 from linksweep.engine.kernel.machine_code import INTEGER, INTEGERS, ROW, TABLE, MachineCode, machine_code
@@ -47,6 +46,8 @@ from linksweep.engine.trace.plan import Plan
 
 SOURCE = inspect.getsource(sys.modules[__name__]) + inspect.getsource(parities)
 """All that enters the machine code besides nodes and instructions."""
+SLOW = {"/", "sqrt"}
+"""Operations that take several times as long as others."""
 TANGENT, FAR = "half_tangent", "far_half"
 """Inputs that place a sample: the tangent of half its angle from the middle of its half turn, and which half."""
 PIECE = "_piece"
@@ -373,7 +374,7 @@ class Evaluators(Patience):
         roles = [[nodes[node] for node in role] for role in (self.inputs, self.constants, self.signals, self.shared)]
         dims = [[dim in node.dims for dim in self.plan.loops] for node in self.inputs]
         counted = [self.dims.index(dim) for dim in self.plan.loops]
-        return f"{SOURCE} {HALF} {sorted(SLOW)} {lines} {roles} {dims} {counted} {PIECE in self.dims}"
+        return f"{SOURCE} {HALF} {lines} {roles} {dims} {counted} {PIECE in self.dims}"
 
 
 def _number(builder: Any, array: Any, k: Any) -> Any:

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
 from linksweep.engine.quantity import Row, Table, Total
+from linksweep.engine.trace.arctangent import arctangent
 from linksweep.engine.trace.graph import Graph, Node, in_order, leading_to
 from linksweep.engine.trace.operators import traced_arctangent
 
@@ -83,6 +84,18 @@ class Plan:
     def only(self, names: tuple[str, ...]) -> Plan:
         """Return the plan of some of the outputs."""
         return _only(self, names)
+
+    def with_arctangents_expanded(self) -> Plan:
+        """Return the plan with the operations of each arctangent in its place."""
+        graph, copies = Graph(), dict[Node, Node]()
+        for node in self.nodes:
+            operands = tuple(copies[x] for x in node.operands)
+            if node.operator == "atan2":
+                y, x = operands
+                copies[node] = arctangent(y, x, Node.where)
+            else:
+                copies[node] = graph.copy(node, operands)
+        return Plan(self.index, {name: copies[node] for name, node in self.outputs.items()}, self.functions)
 
     def dims(self, node: Node) -> tuple[str, ...]:
         """Return a node's dims in the order of its results: loops outermost first, the index last."""
