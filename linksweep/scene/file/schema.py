@@ -143,7 +143,7 @@ def build(cls: Any, raw: dict[str, Any], where: Where, log: Log) -> Any:
         words[key] = log.missing((*where, key), advice(kinds[key], (*where, key)))
     try:
         return cls(**words)
-    except (ValueError, TypeError, AttributeError) as error:
+    except (ValueError, TypeError, AttributeError, LookupError, ArithmeticError) as error:
         if isinstance(error, ValueError):
             log.refused(error, where)
         elif not log.problems:  # else it stumbled over a value that was not read

@@ -1,12 +1,14 @@
 """Linkages in scene files: tables of named things, parts by their names, and texts that read back as equal scenes."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
 
 import linksweep as ls
+from linksweep.scene.file import reading
 from linksweep.scene.file.reading import parse_scene
 from linksweep.scene.file.writing import write_scene
 
@@ -130,6 +132,12 @@ SLIPS = {"guides.slide": "guide.slide", "E on slide": "E on slid", '"-90 deg"': 
 @pytest.mark.parametrize(("old", "new"), SLIPS.items())
 def test_only_the_cause_is_reported(old, new):
     assert len(problems(old, new)) == 1
+
+
+def test_points_under_an_unknown_name_are_missing():
+    text = Path(reading.__file__).parents[1].joinpath("examples/klann-leg.toml").read_text()
+    with pytest.raises(ValueError, match=r"points.E: missing;.*\n.*points.H: missing;.*\n.* ts: unknown key"):
+        parse_scene(text.replace("points = ", "ts = "))
 
 
 def test_all_problems_stand_in_one_message():
