@@ -15,8 +15,8 @@ import numpy as np
 
 from linksweep.engine.kernel.running import EXTREMES
 from linksweep.engine.kernel.vectors import LANES
-from linksweep.engine.kernel.writer import DEEPEST, Reduction, Writer, operands
-from linksweep.engine.trace.graph import Node
+from linksweep.engine.kernel.writer import DEEPEST, Reduction, Writer
+from linksweep.engine.trace.graph import Node, operands
 from linksweep.engine.trace.parity import parities
 from linksweep.engine.trace.plan import Plan
 

@@ -25,7 +25,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from linksweep.engine.kernel.pipeline import Pipeline, pipeline
-from linksweep.engine.trace.graph import Node, in_order, leading_to
+from linksweep.engine.trace.graph import Node, in_order, leading_to, operands
 from linksweep.engine.trace.plan import Plan
 
 ARGUMENTS = (
@@ -297,7 +297,3 @@ class Writer:
         for k, node in own.items():
             value, at = (f"single[{self._at('single', 2 * k + i, node)}]" for i in range(2))
             self._line(1, f"{value}, {at} = {self.reductions[k].kind}({self._row(node)}, angles, work)")
-
-
-def operands(nodes: Iterable[Node]) -> set[Node]:
-    return {x for node in nodes for x in node.operands}

@@ -39,7 +39,7 @@ from linksweep.engine.patience import Patience
 from linksweep.engine.peaks.interpreted import Interpreted
 from linksweep.engine.peaks.lanewise import Values
 from linksweep.engine.peaks.samples import HALF, PLACED
-from linksweep.engine.trace.graph import Node, in_order, leading_to
+from linksweep.engine.trace.graph import Node, in_order, leading_to, operands
 from linksweep.engine.trace.operators import interpret
 from linksweep.engine.trace.parity import parities
 from linksweep.engine.trace.plan import Plan
@@ -94,7 +94,7 @@ class Evaluators(Patience):
 
     def __init__(self, plan: Plan, signals: tuple[str, ...]) -> None:
         self.plan, self.signals = plan, [plan.outputs[signal] for signal in signals]
-        place = {node.value: node for node in plan.nodes if node.operator == "input"}
+        place = {node.value: node for node in plan.input_nodes}
         self.even = ALONG in place
         """True where signals are the same at opposite tangents: on the way there and back."""
         self.anywhere = ANYWHERE in place
@@ -107,12 +107,10 @@ class Evaluators(Patience):
         """The design dims as designs are counted, the last one fastest."""
         self.of_designs = [node for node in work if not self._turns(node)]
         self.at_samples = [node for node in work if self._turns(node)]
-        used = {x for node in self.at_samples for x in node.operands if x.operator != "constant" and not self._turns(x)}
-        read = {x for node in self.of_designs if PIECE in node.dims for x in node.operands}
-        used |= {x for x in read if x.operator != "constant" and PIECE not in x.dims}
+        used = {x for x in operands(self.at_samples) if not self._turns(x)}
+        used |= {x for x in operands(node for node in self.of_designs if PIECE in node.dims) if PIECE not in x.dims}
         widths = [plan.outputs[NEAR_WIDTH], plan.outputs[FAR_WIDTH]]
-        self.constants = [*widths, *in_order(used)]
-        self.fixed = [node for node in plan.nodes if node.operator == "constant"]
+        self.constants = [*widths, *in_order(used - {*plan.constants})]
         self.ahead = self._needed([node for node in self.at_samples if node.operator in SLOW and self.parity[node]])
         """Operations at a place that lead to divisions and roots, which the place shares with its mirror."""
         self.left = [node for node in self.at_samples if node not in set(self.ahead)]
@@ -120,10 +118,10 @@ class Evaluators(Patience):
         of_all = self._of_all()
         self.own = [node for node in self.at_samples if node not in of_all]
         """The operations at samples that each design does for itself."""
-        used = {x for node in self.own for x in node.operands} & of_all
+        used = operands(self.own) & of_all
         self.shared = in_order(used)
         """The values that those take from what all designs have in common."""
-        used |= {x for node in self.left for x in node.operands} | set(self.signals)
+        used |= operands(self.left) | {*self.signals}
         self.kept = [node for node in [self.tangent, self.far, *self.ahead] if node in used]
         """The values that operations left to do, and those of each design, take from the place and from the operations
         before."""
@@ -209,7 +207,8 @@ class Evaluators(Patience):
                 continue
             values[node] = vectors.gather(start, place)
             vectors.prefetch(start, builder.add(first, integer(SOON)))
-        interpret([*self.fixed, *(node for node in self.of_designs if alike <= node.dims)], values, vectors.operators)
+        work = [node for node in self.of_designs if alike <= node.dims]
+        interpret([*self.plan.constants, *work], values, vectors.operators)
         for k, node in enumerate(self.constants):
             if node not in known:
                 vectors.store(values[node], constants.data, integer(k * LANES))
@@ -286,8 +285,7 @@ class Evaluators(Patience):
         with vectors.loop(integer(0), integer(2)) as (turn, _), vectors.loop(integer(0), integer(HALF + 1)) as (k, _):
             places = self._of_pair(vectors, x, turn, k)
             here, there = ({node: vectors.wide(builder.load(next(places))) for node in self.shared} for _ in range(2))
-            here |= self._row(vectors, constants, self.constants)
-            interpret(self.fixed, here, vectors.operators)
+            here |= self._constants(vectors, constants)
             yield turn, k, here, self._mirrored(vectors, self.own, here, there)
 
     def _of_pair(self, vectors: Instructions, x: Any, turn: Any, k: Any) -> Iterator[Any]:
@@ -354,18 +352,18 @@ class Evaluators(Patience):
 
     def _start(self, vectors: Instructions, constants: Any, place: Callable[[Any], Values], k: Any) -> list[Any]:
         """Emit the operations `ahead` at a place, and return the values that are `kept`."""
-        values = self._row(vectors, constants, self.constants) | place(k)
-        interpret([*self.fixed, *self.ahead], values, vectors.operators)
+        values = interpret(self.ahead, self._constants(vectors, constants) | place(k), vectors.operators)
         return [values[node] for node in self.kept]
 
     def _here(self, vectors: Instructions, constants: Any, kept: list[Any]) -> Values:
         """Return values that are `kept`, and constants, loaded where they are used: they would fill the registers."""
-        here = dict(zip(self.kept, kept, strict=True)) | self._row(vectors, constants, self.constants)
-        return interpret(self.fixed, here, vectors.operators)
+        return dict(zip(self.kept, kept, strict=True)) | self._constants(vectors, constants)
 
-    def _row(self, vectors: Instructions, array: Any, nodes: list[Node]) -> Values:
-        """Return the values of nodes that an array holds one after the other."""
-        return {node: vectors.load(array.data, vectors.integer(k * LANES)) for k, node in enumerate(nodes)}
+    def _constants(self, vectors: Instructions, constants: Any) -> Values:
+        """Return the constants of designs, which an array holds one after the other, and those of the plan."""
+        places = enumerate(self.constants)
+        loaded = {node: vectors.load(constants.data, vectors.integer(k * LANES)) for k, node in places}
+        return interpret(self.plan.constants, loaded, vectors.operators)
 
     def _text(self) -> str:
         """Return a text that differs wherever the functions do."""

@@ -34,11 +34,11 @@ PASSED_ON: dict[str, Callable[..., tuple[Node, ...]]] = {
     "+": lambda z, w, x, y: (w, w),
     "-": lambda z, w, x, y: (w, -w),
     "*": lambda z, w, x, y: (w * y, w * x),
-    "/": lambda z, w, x, y: _to_quotient(z, _divided(w, z, x, y)),
+    "/": lambda z, w, x, y: _opposed(_divided(w, z, x, y), 1.0, z),
     "sqrt": lambda z, w, x: (0.5 * w / z,),
     "negate": lambda z, w, x: (-w,),
     "abs": lambda z, w, x: ((x < 0.0).where(-w, w),),
-    "atan2": lambda z, w, y, x: _to_vector(y, x, w / (x * x + y * y)),
+    "atan2": lambda z, w, y, x: _opposed(w / (x * x + y * y), x, y),
 }
 """Adjoints that an operation passes on to its operands, from its result z, the adjoint w of that, and the operands."""
 
@@ -101,11 +101,7 @@ def _divided(w: Node, z: Node, x: Node, y: Node) -> Node:
     return w * (1.0 / y) if y.dims < w.dims else w / y
 
 
-def _to_quotient(z: Node, part: Node) -> tuple[Node, Node]:
-    return part, -(part * z)
-
-
-def _to_vector(y: Node, x: Node, part: Node) -> tuple[Node, Node]:
+def _opposed(part: Node, x: Node | float, y: Node) -> tuple[Node, Node]:
     return part * x, -(part * y)
 
 

@@ -204,6 +204,11 @@ class Graph:
         return self.operation("negate", x)
 
 
+def operands(nodes: Iterable[Node]) -> set[Node]:
+    """Return the operands of nodes."""
+    return {x for node in nodes for x in node.operands}
+
+
 def in_order(nodes: Iterable[Node]) -> list[Node]:
     """Return nodes in the order in which they were traced."""
     return sorted(nodes, key=lambda node: node.position)
