@@ -5,14 +5,17 @@ import math
 import os
 import pickle
 import stat
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
+from numba.core.compiler import Compiler
 
 import linksweep as ls
 from linksweep.base import cache
 from linksweep.engine import run
 from linksweep.engine.kernel import compile as kernels
+from linksweep.engine.kernel import numba_code
 from linksweep.engine.trace.plan import plan
 
 SOURCE = "import math\n\n\ndef kernel(x):\n    x[0] = math.sqrt(x[0])\n"
@@ -222,3 +225,20 @@ def test_without_a_folder_to_write_to_it_compiles_all_the_same(folder, monkeypat
     monkeypatch.setenv("LINKSWEEP_CACHE_DIR", str(elsewhere))
     assert cache.cache_folder() is None
     assert root_of_two() == math.sqrt(2)
+
+
+# ------------------------------------------------------------------------------------------------- numba's part
+
+
+def test_kernels_that_are_optimised_once_have_the_bits_of_numbas_own_compiler(folder, monkeypatch):
+    monkeypatch.setattr(run, "COMPILE_AFTER", -1)
+    scene = ls.example("engine")
+    once = ls.sweep(scene, 100)
+    assert isinstance(kernels.compiled(SOURCE, kinds=("f8*",)).owner._library, numba_code.OptimisedOnce)
+    for path in folder.glob("kernel_*"):
+        path.unlink()
+    forget()
+    own = Mock(side_effect=Compiler)
+    monkeypatch.setattr(numba_code, "KernelCompiler", own)
+    assert ls.sweep(scene, 100).identical(once)
+    assert own.called

@@ -42,10 +42,12 @@ def compiled(kernel_source: str, streamed: str = "", kinds: tuple[str, ...] = KI
     from numba.core.ccallback import CFunc
     from numba.core.sigutils import normalize_signature
 
-    context = f"{kinds} {vectors.SOURCE} {vectors.width()} {streamed}"
+    from linksweep.engine.kernel import numba_code
+
+    context = f"{kinds} {vectors.SOURCE} {vectors.width()} {streamed} {numba_code.SOURCE}"
     module = _module(kernel_source, {"vectorised": partial(_intrinsic, streamed=streamed)}, context)
     signature = normalize_signature(f"void({', '.join(TYPES[kind] for kind in kinds)})")
-    callback: Any = CFunc(module.kernel, signature, {}, SETTINGS)
+    callback: Any = CFunc(module.kernel, signature, {}, SETTINGS, numba_code.KernelCompiler)
     callback._cache = KernelCache(f"{module.__name__}.kernel")
     with _in_written_order() if "in_stages(" in kernel_source else contextlib.nullcontext():
         callback.compile()
