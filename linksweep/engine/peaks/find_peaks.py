@@ -92,9 +92,17 @@ def _peaks(plan: Plan, designs: LaidOut, smooth: bool, threads: int | None) -> P
 
 
 def find_peaks_on_pieces(
-    plan: Plan, signals: tuple[str, ...], inputs: Fields, dim: str, counts: np.ndarray, half: int, threads: int | None
+    plan: Plan,
+    signals: tuple[str, ...],
+    inputs: Fields,
+    dim: str,
+    counts: np.ndarray,
+    half: int,
+    threads: int | None,
+    levels: np.ndarray | None = None,
 ) -> dict[str, PeaksOnPieces]:
-    """Return the largest value of each signal on all pieces of every design.
+    """Return the largest value of each signal on all pieces of every design; its highest sample at least, where no peak
+    can exceed its level (signal, design).
 
     Designs lie along `dim`, and have so many pieces (`counts`); `half` is how many samples there are on either side of
     the middle of each half turn that follows a piece.
@@ -104,13 +112,15 @@ def find_peaks_on_pieces(
     for first in range(0, len(signals), SIGNALS_AT_ONCE):
         request = plan.only((*signals[first : first + SIGNALS_AT_ONCE], *WIDTHS))
         pieces = laid_out(request, inputs, {dim: len(counts), PIECE: int(counts.max())}, half)
-        best = _best_on_pieces(pieces, counts, threads)
+        none = np.full((len(pieces.signals), len(counts)), -np.inf)
+        highest = none if levels is None else levels[first : first + SIGNALS_AT_ONCE].astype(float)
+        best = _best_on_pieces(pieces, counts, highest.ravel(), threads)
         rows = (PEAK, PEAK_X, PEAK_FAR, BEYOND, EVALUATIONS, on_pieces.OF_PIECE)
         peaks |= {signal: PeaksOnPieces(*(best[row, k] for row in rows)) for k, signal in enumerate(pieces.signals)}
     return peaks
 
 
-def _best_on_pieces(pieces: LaidOut, counts: np.ndarray, threads: int | None) -> np.ndarray:
+def _best_on_pieces(pieces: LaidOut, counts: np.ndarray, highest: np.ndarray, threads: int | None) -> np.ndarray:
     """Return the results of a search on pieces (row, signal, design)."""
     run = pieces.run(on_pieces.search, OF_PIECES)
     lanes, signals, (blocks, together) = pieces.lanes, len(pieces.signals), _blocks_of_pieces(pieces, len(counts))
@@ -121,7 +131,7 @@ def _best_on_pieces(pieces: LaidOut, counts: np.ndarray, threads: int | None) ->
         run(
             first, last, together, lanes, counts, *pieces.arguments_of_pieces(together),
             np.zeros((turns.STATE_ROWS, signals * lanes)), np.zeros((turns.STATE_ROWS, lanes)),
-            np.zeros(together * signals * lanes), np.zeros((on_pieces.SUMMIT_ROWS, most)),
+            highest, np.zeros((on_pieces.SUMMIT_ROWS, most)),
             np.zeros((BRACKET_ROWS, turns.ROOM)), pieces.gathered, np.zeros((on_pieces.OF_PIECE, most)), best,
         )  # fmt: skip
 

@@ -49,15 +49,14 @@ def search(
     each signal, one signal after the other.
 
     `counts` are the numbers of the designs' pieces. Those of a block are searched one after the other: a row of
-    `constants` and of other tables for each, and in `tops` a column for each piece of each signal.
+    `constants` and of other tables for each, and in `tops` a column for each piece of each signal. `highest` are levels
+    for each design of each signal, one signal after the other; peaks that lie lower matter to nobody.
     """
     designs, pieces, columns, half = len(counts), len(constants) // together, state.shape[1], grades.shape[1] - 1
     of_designs, tables = (sizes, parameters, parameter_at), (constants, x, rows)
     sampling = grades, prepare, enter, sample
     for start in range(first, last, together):
         stop, count = min(start + together, last), 0
-        for k in range(len(highest)):
-            highest[k] = -math.inf
         for block in range(start, stop):
             front = block * lanes
             for piece in range(most_pieces(counts, front, lanes)):
@@ -66,7 +65,7 @@ def search(
                 compare(rows[row], columns, half, state)
                 for lane in range(min(lanes, designs - front)):
                     if piece < counts[front + lane]:
-                        place, own = row * lanes + lane, (block - start) * lanes + lane
+                        place, own = row * lanes + lane, (front + lane, designs)
                         count = note_summits(rows[row], state, lanes, place, half, own, highest, summits, count, tops)
         count = drop_lower(summits, count, highest)
         confirm(summits, count, lanes, half, tables, evaluate, trials, brackets, gathered, tops)
@@ -104,13 +103,13 @@ def compare(rows, columns, half, state):
         compare_closely(rows[(HALF - 1) * columns :], 2 * HALF + 4, state, columns)
 
 
-def note_summits(rows, state, lanes, place, half, design, highest, summits, count, tops):
+def note_summits(rows, state, lanes, place, half, own, highest, summits, count, tops):
     """Note the best summit of each signal on a piece, and its highest sample; return how many summits there are."""
-    columns, lane = state.shape[1], place % lanes
+    columns, lane, (design, designs) = state.shape[1], place % lanes, own
     signals = columns // lanes
     width = tops.shape[1] // signals
     for signal in range(signals):
-        k, tag, of_design = signal * lanes + lane, signal * width + place, design * signals + signal
+        k, tag, of_design = signal * lanes + lane, signal * width + place, signal * designs + design
         value, height = rows[int(state[SUMMIT, k]) * columns + k], math.inf
         if state[REACH, k] > -math.inf:  # else nothing is known
             height = max(state[REACH, k], hidden_height(rows, int(state[SUMMIT, k]), columns, k))

@@ -110,13 +110,6 @@ def _flat_index(field: Field, places: Places, count: int) -> Array:
     return np.ravel_multi_index(tuple(places[dim] for dim in field.dims), field.values.shape)
 
 
-def raise_to(peak: SignalPeak, group: Any, numbers: tuple[Array, ...]) -> None:
-    """Replace a signal's peak of each of a group's designs, some of which are in it several times, by the highest of
-    these numbers."""
-    at, (value, angle, *others) = _flat_index(peak.value, group.places, len(group.designs)), numbers
-    _raise(peak, at, value, angle, *map(np.nan_to_num, others))
-
-
 def _raise(peak: SignalPeak, at: Array, best: Array, best_angle: Array, best_bound: Array, taken: Array) -> None:
     """Replace a signal's peak at each index by the highest of the paths with that index, where that is higher."""
     value, angle, bound, samples = (field.values.reshape(-1) for field in peak)

@@ -95,7 +95,7 @@ def _along(group: Group, ends: tuple[Array, ...], toggles: tuple[Array, ...], cl
     before[:, 0], after[:, -1] = x[:, 0] - 0.01 * NEAREST, x[:, -1] + 0.01 * NEAREST
     near = np.empty((len(row), 0)) if group.limits is None else group.limits.near_toggle[row]
     singular = np.concatenate([toggles[0][row], toggles[1][row], near], axis=1)
-    steps = _steps(singular, middle, half, group.scene.period_of_motion)
+    steps = steps_at_ends(singular, middle, half, group.scene.period_of_motion)
     paths = Paths(row, x, before, after, cuts, middle, half, steps, ends="stop")
     return paths.some(_ok_somewhere(group, paths))
 
@@ -177,7 +177,7 @@ def _filled(x: Array) -> Array:
     return np.where(np.isnan(x), arbitrary, x)
 
 
-def _steps(toggles: Array, middle: Array, half: Array, period: float) -> Array:
+def steps_at_ends(toggles: Array, middle: Array, half: Array, period: float) -> Array:
     """Return steps (path, end) for extrapolation to the ends, small against the distance in x to the next toggle or
     near-toggle.
 

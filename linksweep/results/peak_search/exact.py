@@ -3,8 +3,9 @@
 Where the crank turns fully, no load changes with the angle and near-toggles are known in closed form, the fused search
 inside the kernel finds them. Where friction alone makes forces jump, loads over the angle are tables, or near-toggles
 may be anywhere, it searches the pieces of the cycle between jumps and near-toggles, and between some of the tables'
-angles. Otherwise its samples ignore jumps and the closest approaches of springs: paths about these are searched too.
-Other designs and scenes are searched along paths alone.
+angles; of designs that move over part of a turn, the pieces of the arcs between toggles. Otherwise its samples ignore
+jumps and the closest approaches of springs: paths about these are searched too. Other designs and scenes are searched
+along paths alone.
 
 A peak is a value of the signal at some angle, so that it exceeds the true one by no more than rounding.
 """
@@ -38,19 +39,17 @@ from linksweep.results.peak_search.along_paths import (
 from linksweep.results.peak_search.approaches import with_narrow_approaches
 from linksweep.results.peak_search.arcs import about_approaches_on_arcs, arc_ends, arcs, arcs_within
 from linksweep.results.peak_search.between import EVERYWHERE, ONE, PARTLY
-from linksweep.results.peak_search.groups import assembled_groups, different, empty, groups
+from linksweep.results.peak_search.groups import all_at_once, assembled_groups, different, empty, groups
+from linksweep.results.peak_search.on_arcs import follow_arcs
 from linksweep.results.peak_search.paths import ASIDE, Part, about_approaches, about_breaks, turns
 from linksweep.results.peak_search.pieces import (
     AT_ONCE,
-    designs_without_jams,
     divides,
     follow_pieces,
     known_on_pieces,
     rubbing_signals,
-    turning_without_jams,
 )
-from linksweep.results.peak_search.poles import designs_with_candidates, may_have_poles
-from linksweep.results.peak_search.unbounded import follow_unbounded
+from linksweep.results.peak_search.poles import designs_with_candidates, designs_without_jams, may_have_poles
 from linksweep.scene.dimensions import aligned
 from linksweep.scene.grid import NAMES as GRID_ROWS
 from linksweep.scene.pairs import Array, changes, in_period
@@ -102,15 +101,26 @@ def _by_paths(
     on_pieces = {}
     if not paths and known_on_pieces(scene):
         on_pieces = {signal: peaks[signal] for signal in _turning(scene, signals)}
-        designs = different(scene, (*on_pieces, "assembly"))
-        sound = turning_without_jams(scene, designs)
-        follow_pieces(scene, sound, {regardless_of_jams(signal): peak for signal, peak in on_pieces.items()}, threads)
-        _follow_all(scene, on_pieces, paths, threads, _without(designs, sound))
+        left = _follow_on_pieces(
+            scene, {regardless_of_jams(signal): peak for signal, peak in on_pieces.items()}, threads
+        )
+        _follow_all(scene, on_pieces, paths, threads, left)
     _follow_all(scene, {signal: peaks[signal] for signal in signals if signal not in on_pieces}, paths, threads)
     if scene.quick.all:
         return peaks
     over_angle = {signal: peak for signal, peak in peaks.items() if changes(scene, (signal,))}
     return peaks | {signal: with_unknown_bound(peak) for signal, peak in over_angle.items()}
+
+
+def _follow_on_pieces(scene: Scene, peaks: dict[str, SignalPeak], threads: int | None) -> Array:
+    """Write the peaks of designs of which pieces of their turns or arcs are enough; return the others."""
+    designs = different(scene, (*peaks, "assembly"))
+    assembly = all_at_once(scene, designs).assembly()
+    turning = designs_without_jams(scene, designs[assembly == EVERYWHERE])
+    follow_pieces(scene, turning, peaks, threads)
+    partly = designs[assembly == PARTLY]
+    followed = turning, np.setdiff1d(partly, follow_arcs(scene, partly, peaks, threads))
+    return np.setdiff1d(designs, np.concatenate(followed))
 
 
 def _follow_all(
@@ -151,8 +161,11 @@ def _fused_first(scene: Scene, signals: tuple[str, ...], assembly: Field, thread
         narrow = np.intersect1d(with_narrow_approaches(scene, threads), whole)
         for group in groups(scene, names, narrow, WINDOWS_AT_ONCE):
             follow(group, peaks, (about_approaches,), threads)
-    for group in groups(scene, names, follow_unbounded(scene, partly, peaks, threads)) if len(partly) else ():
-        follow(group, peaks, paths_of(scene, PARTLY), threads)
+    if len(partly):
+        constant = tuple(signal for signal in signals if signal not in turning)
+        left = follow_arcs(scene, partly, {signal: peaks[signal] for signal in turning}, threads)
+        for own, some in ((turning, left), (constant, partly)):
+            _follow_all(scene, {signal: peaks[signal] for signal in own}, (), threads, some)
     return {signal: peaks[signal] for signal in signals}
 
 

@@ -24,10 +24,9 @@ from linksweep.engine.trace.plan import Plan, plan
 from linksweep.physics.algebra import planar
 from linksweep.physics.closures import crank_angle
 from linksweep.results.peak_search.along_paths import SignalPeak, angle_in_period, put
-from linksweep.results.peak_search.between import EVERYWHERE, ONE
-from linksweep.results.peak_search.groups import Group, all_at_once, groups
+from linksweep.results.peak_search.between import ONE
+from linksweep.results.peak_search.groups import Group, groups
 from linksweep.results.peak_search.paths import distinct
-from linksweep.results.peak_search.poles import singular_angles
 from linksweep.results.peak_search.side_by_side import FASTEST
 from linksweep.scene.curves.polynomials import Polynomials, polynomials
 from linksweep.scene.dimensions import aligned
@@ -53,6 +52,8 @@ NEAR_END = 1e-4
 less than rounding elsewhere does move near a near-toggle."""
 BORDERS = np.array([90.0, 270.0])
 """Ends of half turns, from the near-toggle [degree]."""
+SHORTEST = 1e-6
+"""Length of a piece of which only the start counts [degree]."""
 BEYOND = 30.0
 """How far a piece may reach beyond its half turn, rather than be cut at the border [degree]."""
 
@@ -65,8 +66,8 @@ class Pieces(NamedTuple):
 
     `start` and `end` (design, piece) are angles from the near-toggle [degree], in one row where all designs share them;
     `half` is 0 or 1 for the half turn in which, or about which, a piece lies. A design with fewer pieces than others,
-    as `counts` tells, goes on with its first. `directions` are those of sliding (direction, design, piece); `widths`
-    limit the widths of peaks about the ends (end, design, piece), as tangents of half the angle that follows the piece.
+    as `counts` tells, goes on with its first. `directions` are those of sliding (direction, design, piece); `arc` has
+    the toggles at both ends (end, design) of an arc, in place of a turn, that pieces divide.
     """
 
     start: Array
@@ -74,7 +75,16 @@ class Pieces(NamedTuple):
     half: Array
     counts: Array
     directions: Array
-    widths: Array | float = 1.0
+    arc: Array | None = None
+
+    @property
+    def widths(self) -> Array | float:
+        """Largest widths of peaks about the ends (end, design, piece), by the distances of the arc's toggles: as
+        tangents of half the angle that follows a piece."""
+        if self.arc is None:
+            return 1.0
+        start, end = self.arc[..., None]
+        return np.sqrt(np.minimum(np.stack([self.start - start, end - self.end]) / (self.end - self.start), 1.0))
 
     @property
     def exist(self) -> Array:
@@ -84,8 +94,8 @@ class Pieces(NamedTuple):
     def some(self, rows: Array) -> Pieces:
         """Return the pieces of the designs in these rows."""
         start, end, half = (x if len(x) < len(self.counts) else x[rows] for x in self[:3])
-        widths = self.widths if isinstance(self.widths, float) else self.widths[:, rows]
-        return Pieces(start, end, half, self.counts[rows], self.directions[:, rows], widths)
+        arc = None if self.arc is None else self.arc[:, rows]
+        return Pieces(start, end, half, self.counts[rows], self.directions[:, rows], arc)
 
     def tangents(self, angle: Array) -> Array:
         """Return the tangents of half the angles from the middles of half turns."""
@@ -120,16 +130,6 @@ def known_on_pieces(scene: Scene) -> bool:
     return divided and simple and machine.fastest <= FASTEST and (scene.steady or _loads(scene) is not None)
 
 
-def turning_without_jams(scene: Scene, designs: Array) -> Array:
-    """Return those designs of a scene that turn fully, without jams or dead centres."""
-    return designs_without_jams(scene, designs[all_at_once(scene, designs).assembly() == EVERYWHERE])
-
-
-def designs_without_jams(scene: Scene, designs: Array) -> Array:
-    """Return those designs of a scene that friction jams nowhere, and whose drive stands still nowhere."""
-    return designs[~np.isfinite(singular_angles(all_at_once(scene, designs))).any(axis=1)]
-
-
 def follow_pieces(scene: Scene, designs: Array, peaks: dict[str, SignalPeak], threads: int | None) -> None:
     """Write the peaks of designs, from a search of their pieces."""
     at_once = AT_ONCE if scene.steady else LOADED_AT_ONCE
@@ -150,16 +150,18 @@ def _by_samples(group: Group) -> Iterator[tuple[int, Group]]:
 
 
 def highest_on_pieces(
-    group: Group, pieces: Pieces, signals: tuple[str, ...], half: int, threads: int | None
+    group: Group, pieces: Pieces, signals: tuple[str, ...], half: int, threads: int | None, levels: Array | None = None
 ) -> Mapping[str, Numbers]:
     """Return the highest peak of each signal on the pieces of each design, which have so many samples on either side of
-    the middle of each half turn."""
+    the middle of each half turn; below a level (signal, design) only the highest sample."""
     order = np.argsort(pieces.counts, kind="stable")  # side by side stand designs with as many pieces
     group, pieces, back = group.some(order), pieces.some(order), np.argsort(order)
     request, inputs = _evaluated(group, pieces, signals)
     frame, period = group.number(group.scene.mechanism.near_toggle_angle), group.scene.period
     highest = {}
-    for signal, peak in find_peaks_on_pieces(request, signals, inputs, ONE, pieces.counts, half, threads).items():
+    levels = None if levels is None else levels[:, order]
+    peaks = find_peaks_on_pieces(request, signals, inputs, ONE, pieces.counts, half, threads, levels)
+    for signal, peak in peaks.items():
         value, tangent, far, bound, samples, piece = peak
         at = np.arange(len(value)), np.nan_to_num(piece).astype(int)
         angle = angle_in_period(_angles(pieces, inputs, at, tangent, far) + frame, period)
@@ -172,7 +174,11 @@ def highest_on_pieces(
 
 def _pieces(group: Group, half: int, threads: int | None) -> Pieces:
     """Return the pieces of a group's designs, which end at all jumps and kinks."""
-    pieces = _between_jumps(group)
+    return cut_at_kinks(group, _between_jumps(group), half, threads)
+
+
+def cut_at_kinks(group: Group, pieces: Pieces, half: int, threads: int | None) -> Pieces:
+    """Return pieces between jumps, cut at all kinks, with their directions of sliding."""
     pieces = pieces._replace(directions=_directions(group, pieces, threads))
     for name in group.scene.mechanism.kinks():
         pieces = _cut_at_zeros(group, pieces, name, half, threads)
@@ -207,6 +213,18 @@ def _directions_at(group: Group, pieces: Pieces, share: Array, threads: int | No
 
 def _between_jumps(group: Group) -> Pieces:
     """Return the pieces of the whole cycle between jumps, narrow near-toggles, and ends of half turns or knots."""
+    breaks, narrow = breaks_and_near_toggles(group)
+    ends = [*breaks, narrow]
+    if _loads(group.scene) is None:
+        away = np.abs(np.mod(_side_by_side(breaks)[:, :, None] - BORDERS + 180.0, 360.0) - 180.0)
+        ends.append(np.where((away < BEYOND).any(axis=1), np.nan, BORDERS))
+    cuts = distinct(_side_by_side(ends))
+    return between(cuts, cuts[:, 0] + group.scene.period, len(group.designs))
+
+
+def breaks_and_near_toggles(group: Group) -> tuple[list[Array], Array]:
+    """Return the angles from the near-toggle (design, nth) [degree] of jumps and knots of the whole cycle, each kind in
+    one row if that is the same for all designs, and those of narrow near-toggles."""
     scene, period, designs = group.scene, group.scene.period, len(group.designs)
     turns = np.arange(0.0, period, scene.mechanism.period)
     located = (group.zeros("jump")[..., None] + turns).reshape(designs, -1)
@@ -218,12 +236,7 @@ def _between_jumps(group: Group) -> Pieces:
         narrow = np.where(widths < NARROW, middles, np.nan)
     if loads and group.limits is None:  # pieces are short in any case, and many designs share them
         narrow = middles[:1]
-    ends = [*breaks, (narrow[..., None] + turns).reshape(len(narrow), -1)]
-    if loads is None:
-        away = np.abs(np.mod(_side_by_side(breaks)[:, :, None] - BORDERS + 180.0, 360.0) - 180.0)
-        ends.append(np.where((away < BEYOND).any(axis=1), np.nan, BORDERS))
-    cuts = distinct(_side_by_side(ends))
-    return between(cuts, cuts[:, 0] + period, designs)
+    return breaks, (narrow[..., None] + turns).reshape(len(narrow), -1)
 
 
 def _in_one_row(numbers: Array) -> Array:
@@ -263,9 +276,9 @@ def _cut_at_zeros(group: Group, pieces: Pieces, name: str, half: int, threads: i
     angle = _angles(pieces, inputs, zeros[:2], tangent[zeros], far[zeros])
     designs, start = len(pieces.counts), np.where(pieces.exist, pieces.start, np.nan)
     cuts = np.sort(np.concatenate([start, by_row(zeros[0], angle, designs)], axis=1), axis=1)
-    cut = between(cuts, start[:, 0] + group.scene.period, designs)
+    cut = between(cuts, np.where(pieces.exist, pieces.end, -np.inf).max(axis=1), designs)
     of = (cut.start[:, :, None] >= start[:, None, :]).sum(axis=-1) - 1
-    return cut._replace(directions=np.take_along_axis(pieces.directions, of[None], axis=2))
+    return cut._replace(directions=np.take_along_axis(pieces.directions, of[None], axis=2), arc=pieces.arc)
 
 
 def _angles(pieces: Pieces, inputs: Fields, at: tuple[Array, ...], tangent: Array, far: Array) -> Array:
@@ -282,22 +295,43 @@ def _angles(pieces: Pieces, inputs: Fields, at: tuple[Array, ...], tangent: Arra
 # ---------------------------------------------------------------------------------------------- evaluation
 
 
+def values_at(group: Group, names: tuple[str, ...], angles: Array, threads: int | None) -> Array:
+    """Return values (name, design, nth) of quantities at angles (design, nth) from the near-toggle [degree]: at the
+    starts of pieces."""
+    scene, known = group.scene, np.full(len(angles), angles.shape[1])
+    half = np.floor(np.mod(angles + 90.0, 360.0) / 180.0)
+    pieces = Pieces(angles, angles + SHORTEST, half, known, np.empty((0, *angles.shape)))
+    if scene.mechanism.directions():
+        pieces = pieces._replace(directions=_directions_at(group, pieces, np.zeros((1, 1)), threads))
+    table, own = _on_own_pieces(group, pieces)
+    start = {ALONG: Field((), np.zeros(())), END: Field((), np.zeros(()))}
+    request, inputs = group.one_by_one(table, names, np.arange(len(angles)), own | start, ())
+    values = evaluate(request, inputs, scene.grid(1), dict(zip((ONE, PIECE), angles.shape, strict=True)), threads)
+    return np.stack([np.broadcast_to(aligned(values[name], (ONE, PIECE)), angles.shape) for name in names])
+
+
 def _evaluated(group: Group, pieces: Pieces, names: tuple[str, ...]) -> tuple[Plan, Fields]:
     """Return the plan of quantities on pieces, and its inputs: those of the designs, and of the pieces."""
-    scene, index = group.scene, group.scene.mechanism.index
-    directions, half = scene.mechanism.directions(), pieces.half
+    index, (table, own) = group.scene.mechanism.index, _on_own_pieces(group, pieces)
     start, end = map(pieces.tangents, (pieces.start, pieces.end))
     widths = np.minimum(_widths(pieces, start, end, *group.near_toggles()), pieces.widths)
-    own = dict(zip((*ENDS, HALF_TURN, *WIDTHS), (start, end, half, *widths), strict=True))
+    own |= {name: _of_pieces(values) for name, values in zip(WIDTHS, widths, strict=True)}
+    places = ((ALONG, (index, ONE, PIECE)), (END, (index,)))
+    return group.one_by_one(table, (*names, NEAR_WIDTH, FAR_WIDTH), np.arange(len(group.designs)), own, places)
+
+
+def _on_own_pieces(group: Group, pieces: Pieces) -> tuple[Table, dict[str, Field]]:
+    """Return the table of quantities on pieces, and the inputs of the pieces but for widths of near-toggles."""
+    scene, directions = group.scene, group.scene.mechanism.directions()
+    numbers = pieces.tangents(pieces.start), pieces.tangents(pieces.end), pieces.half
+    own = dict(zip((*ENDS, HALF_TURN), numbers, strict=True))
     own |= {on_piece(name): values for name, values in zip(directions, pieces.directions, strict=True)}
     table, loads = _table_on_pieces(scene.table, directions), _loads(scene)
     if loads is not None:
         own |= {MIDDLE: pieces.tangents(0.5 * (pieces.start + pieces.end))}
         own |= _on_pieces(loads, group, pieces)
         table = _table_on_pieces(scene.table, directions, loads.rows(ANGLE))
-    of_pieces = {name: _of_pieces(values) for name, values in own.items()}
-    places = ((ALONG, (index, ONE, PIECE)), (END, (index,)))
-    return group.one_by_one(table, (*names, NEAR_WIDTH, FAR_WIDTH), np.arange(len(group.designs)), of_pieces, places)
+    return table, {name: _of_pieces(values) for name, values in own.items()}
 
 
 def _of_pieces(values: Array) -> Field:

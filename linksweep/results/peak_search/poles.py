@@ -146,6 +146,11 @@ def singular_angles(group: Group, signals: tuple[str, ...] = ()) -> Array:
     return np.concatenate([group.zeros("dead_centre"), group.zeros("wedge"), *chain(*angles)], axis=1)
 
 
+def designs_without_jams(scene: Scene, designs: Array) -> Array:
+    """Return those designs of a scene that friction jams nowhere, and whose drive stands still nowhere."""
+    return designs[~np.isfinite(singular_angles(all_at_once(scene, designs))).any(axis=1)]
+
+
 def _dead_centres_and_jams(group: Group, signals: tuple[str, ...]) -> Candidates:
     angle = singular_angles(group, signals)
     row, which = np.nonzero(np.isfinite(angle))

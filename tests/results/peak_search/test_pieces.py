@@ -212,7 +212,7 @@ def test_of_pieces_with_several_summits_the_highest_is_the_peak():
         with np.errstate(all="ignore"):
             on_pieces.search(
                 0, 2, together, 1, counts, *pieces.arguments_of_pieces(together), np.zeros((STATE_ROWS, 1)),
-                np.zeros((STATE_ROWS, 1)), np.zeros(together), np.zeros((on_pieces.SUMMIT_ROWS, room)),
+                np.zeros((STATE_ROWS, 1)), np.full(2, -np.inf), np.zeros((on_pieces.SUMMIT_ROWS, room)),
                 np.zeros((BRACKET_ROWS, ROOM)), pieces.gathered, np.zeros((on_pieces.OF_PIECE, room)), best,
             )  # fmt: skip
         results.append(best)

@@ -1,0 +1,238 @@
+"""Search for peaks on arcs between toggles, at which signals grow without bound or have limits.
+
+Each arc is searched piece by piece. Two pieces begin beside its toggles, with samples that are dense down to rounding:
+there quantities vary as the root of the angle that remains, so that they are smooth along the piece, whatever lies just
+beyond the toggle. Limits are those of polynomials of that root.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from linksweep.engine.peaks.samples import HALF
+from linksweep.results.peak_search.along_paths import SignalPeak, angle_in_period, put
+from linksweep.results.peak_search.arcs import NEAREST, arc_ends, steps_at_ends
+from linksweep.results.peak_search.groups import Group, groups
+from linksweep.results.peak_search.paths import distinct
+from linksweep.results.peak_search.pieces import (
+    AT_ONCE,
+    BEYOND,
+    BORDERS,
+    LOADED_AT_ONCE,
+    Pieces,
+    between,
+    breaks_and_near_toggles,
+    cut_at_kinks,
+    highest_on_pieces,
+    known_on_pieces,
+    values_at,
+)
+from linksweep.results.peak_search.poles import designs_without_jams
+from linksweep.scene.pairs import Array, some_of
+from linksweep.scene.scene import Scene
+
+PROBES = 10.0, 1.0
+"""Distances from a toggle, as multiples of that of the closest sample, of those that show whether a signal is
+unbounded."""
+GROWTH, LARGE = 5.0, 0.1
+"""Growth from the one to the other of an unbounded signal, and its size there, relative to its peak elsewhere."""
+SURELY = 1e3
+"""Size there, relative to that in the middle of the arc, from which on it has no peak elsewhere."""
+BESIDE_TOGGLE = 1e-4
+"""Part of an arc that is a piece of its own beside each toggle."""
+ROUNDING, SHORTEST = 1e-12, 1e-6
+"""Distance of a sample from a toggle in which rounding does not show, and the length of the shortest arcs [degree]."""
+NODES, SPANS = 10, (25.0, 5.0, 1.0, 0.2, 0.04)
+"""Samples before a toggle from which a signal is extrapolated, and the distances from it of the farthest ones, in steps
+of a search along paths. The first is a quarter of that to the next toggle: others may hide beyond."""
+ALLOWED = 1e-10
+"""Error of a limit, relative to it, from which on samples are taken closer to the toggle."""
+ANGLES = (np.arange(NODES) + 0.5) * (np.pi / NODES)
+TERMS = np.cos(np.outer(ANGLES, np.arange(NODES))) * np.append(1.0, np.full(NODES - 1, 2.0)) / NODES
+"""Chebyshev's angles of samples, and the terms of the polynomial through values there, at the angle 0."""
+
+
+class Arcs(NamedTuple):
+    """Arcs of designs, in their order: row of the design in its group, start and end as angles from the near-toggle
+    [degree]."""
+
+    row: Array
+    start: Array
+    end: Array
+
+    @property
+    def length(self) -> Array:
+        """Length of each arc [degree]."""
+        return self.end - self.start
+
+    @property
+    def nearest(self) -> Array:
+        """Distance in x of the closest sample from either end."""
+        return np.maximum(NEAREST, 2.0 * np.sqrt(ROUNDING / self.length))
+
+    def beside(self, ends: Array, x: Array) -> Array:
+        """Return angles (arc, place) at distances x (arc, place) from the starts (0) or ends (1) of arcs."""
+        away = self.length[:, None] * np.sin(0.5 * x) ** 2
+        return np.where(ends > 0, self.end[:, None] - away, self.start[:, None] + away)
+
+
+class Best(NamedTuple):
+    """The highest values of signals on arcs (signal, arc), their angles from the near-toggle [degree], bounds, and
+    counts of samples."""
+
+    value: Array
+    angle: Array
+    bound: Array
+    samples: Array
+
+    def raise_to(self, higher: Array, value: Array | float, angle: Array, bound: Array | float) -> None:
+        """Replace values by higher ones."""
+        for own, numbers in zip(self, (value, angle, bound), strict=False):
+            np.copyto(own, numbers, where=higher)
+
+
+def follow_arcs(scene: Scene, designs: Array, peaks: dict[str, SignalPeak], threads: int | None) -> Array:
+    """Write the peaks of designs that move over part of a turn; return those for which pieces are not enough."""
+    if not (peaks and len(designs) and known_on_pieces(scene)):
+        return designs
+    sound, signals = designs_without_jams(scene, designs), tuple(peaks)
+    left = [np.setdiff1d(designs, sound, assume_unique=True)]
+    at_once = AT_ONCE if scene.steady else LOADED_AT_ONCE
+    for group in groups(scene, signals, sound, at_once, at_once):
+        arcs = _arcs(group)
+        best, sure = _highest(group.some(arcs.row), arcs, signals, threads)
+        known = np.bincount(arcs.row, minlength=len(group.designs)) > 0
+        known[arcs.row[~sure]] = False
+        rows = np.flatnonzero(known)
+        part, numbers = group.some(rows), _highest_of_designs(arcs.row, best, len(known))
+        frame = part.number(scene.mechanism.near_toggle_angle)
+        for k, peak in enumerate(peaks.values()):
+            value, angle, bound, samples = (table[k, rows] for table in numbers)
+            put(peak, part, (value, angle_in_period(angle + frame, scene.period), bound, samples))
+        left.append(group.designs[~known])
+    return np.sort(np.concatenate(left))
+
+
+def _highest_of_designs(row: Array, best: Best, designs: int) -> Best:
+    """Return the highest values on all arcs of designs (signal, design), of equal ones the first."""
+    nth = np.arange(len(row)) - np.searchsorted(row, row)
+    tables = np.zeros((4, len(best.value), designs, nth.max(initial=0) + 1))
+    tables[0] = -np.inf
+    tables[:, :, row, nth] = best
+    value, angle, bound, samples = tables
+    first = value.argmax(axis=2)[..., None]
+    highest, at = (np.take_along_axis(table, first, axis=2)[..., 0] for table in (value, angle))
+    with np.errstate(invalid="ignore"):
+        above = np.where(highest < np.inf, (value + bound).max(axis=2) - highest, 0.0)
+    return Best(highest, at, above, samples.sum(axis=2))
+
+
+def _arcs(group: Group) -> Arcs:
+    """Return all arcs of a group's designs, in every turn of the cycle."""
+    (starts, ends), machine = arc_ends(group), group.scene.mechanism
+    turns = np.arange(0.0, group.scene.period, machine.period)
+    row, nth, turn = np.nonzero(np.isfinite(starts)[..., None] & np.isfinite(turns))
+    first, last = starts[row, nth], ends[row, nth]
+    start = np.mod(first - group.number(machine.near_toggle_angle)[row], machine.period) + turns[turn]
+    return Arcs(row, start, start + (last - first))
+
+
+def _highest(group: Group, arcs: Arcs, signals: tuple[str, ...], threads: int | None) -> tuple[Best, Array]:
+    """Return the highest values of signals on arcs, one of each design of a group, and whether they are known."""
+    both, probes = np.repeat([0, 1], len(PROBES)), np.multiply.outer(arcs.nearest, np.tile(PROBES, 2))
+    angles = np.concatenate([arcs.beside(both, probes), (arcs.start + 0.5 * arcs.length)[:, None]], axis=1)
+    values = values_at(group, (*signals, "status"), angles, threads)
+    known = (values[-1, :, -1] == 0.0) & (arcs.length > SHORTEST) & np.isfinite(values).all(axis=(0, 2))
+    farther, closer, middle = values[:-1, :, :-1:2], values[:-1, :, 1:-1:2], np.abs(values[:-1, :, -1:])
+    with np.errstate(invalid="ignore"):
+        grows, change = np.abs(closer) > GROWTH * np.abs(farther), np.abs(closer - farther)
+        infinite = grows & (closer > SURELY * middle)
+        best = _on_pieces(group, arcs, signals, known & ~infinite.any(axis=2), threads)
+        grows &= np.abs(closer) > LARGE * np.abs(best.value)[..., None]
+        infinite |= grows & (closer > 0.0)
+        limited = known[:, None] & ~grows & (closer + change >= best.value[..., None])
+    limited &= ~infinite.any(axis=2, keepdims=True)
+    best.samples[...] += values.shape[2]
+    for end, edge in enumerate((arcs.start, arcs.end)):
+        best.raise_to(infinite[..., end] & (best.value < np.inf), np.inf, edge, 0.0)
+    for end, edge in enumerate((arcs.start, arcs.end)):
+        limit, error, samples = _limits(group, arcs, end, signals, limited[..., end], threads)
+        limit = np.minimum(limit, closer[..., end] + change[..., end])
+        best.raise_to(limit > best.value, limit, edge, error)
+        best.samples[...] += samples
+    return best, known
+
+
+def _on_pieces(group: Group, arcs: Arcs, signals: tuple[str, ...], asked: Array, threads: int | None) -> Best:
+    """Return the highest values of signals on pieces of arcs where they are `asked` for (signal, arc); −inf or samples
+    elsewhere."""
+    best = Best(np.full(asked.shape, -np.inf), *np.zeros((3, *asked.shape)))
+    rows, which = np.flatnonzero(asked.any(axis=0)), np.flatnonzero(asked.any(axis=1))
+    if len(rows):
+        part, names = group.some(rows), tuple(signals[k] for k in which)
+        pieces = cut_at_kinks(part, _pieces(part, some_of(arcs, rows)), HALF, threads)
+        levels = np.where(asked[np.ix_(which, rows)], -np.inf, np.inf)
+        highest = highest_on_pieces(part, pieces, names, HALF, threads, levels)
+        for table, *of_signals in zip(best, *highest.values(), strict=True):
+            table[np.ix_(which, rows)] = of_signals
+    return best
+
+
+def _pieces(group: Group, arcs: Arcs) -> Pieces:
+    """Return the pieces of arcs, one of each of these designs: between toggles, jumps and knots, narrow near-toggles,
+    and ends of half turns."""
+    length, period = arcs.length, group.scene.period
+    nearest = length * np.sin(0.5 * arcs.nearest) ** 2
+    breaks, narrow = breaks_and_near_toggles(group)
+    away = [
+        _inside(np.mod(angles - arcs.start[:, None], period), least, length)
+        for angles, least in [*((angles, nearest) for angles in (*breaks, narrow)), (BORDERS[None], BEYOND)]
+    ]
+    beside = np.stack([nearest, BESIDE_TOGGLE * length, (1.0 - BESIDE_TOGGLE) * length], axis=1)
+    cuts = arcs.start[:, None] + np.concatenate([*away, beside], axis=1)
+    pieces = between(distinct(cuts), arcs.end - nearest, len(length))
+    return pieces._replace(arc=np.stack([arcs.start, arcs.end]))
+
+
+def _inside(away: Array, least: Array | float, length: Array) -> Array:
+    """Return distances (arc, nth) from the starts of arcs, NaN for those that are less from either end."""
+    least = np.broadcast_to(least, len(length))[:, None]
+    with np.errstate(invalid="ignore"):
+        return np.where((away > least) & (away < length[:, None] - least), away, np.nan)
+
+
+def _limits(
+    group: Group, arcs: Arcs, end: int, signals: tuple[str, ...], asked: Array, threads: int | None
+) -> tuple[Array, Array, Array]:
+    """Return the limits of signals at one end of arcs where they are `asked` for (signal, arc), −inf elsewhere, their
+    errors, and counts of samples: the limits of polynomials through samples before the end, with their last terms."""
+    limit, error, samples = np.where(asked, 0.0, -np.inf), np.where(asked, np.inf, 0.0), np.zeros(asked.shape)
+    if not asked.any():
+        return limit, error, samples
+    steps = _steps(group, arcs)[:, end]
+    for span in SPANS:
+        with np.errstate(invalid="ignore"):
+            unsure = asked & ~(error <= ALLOWED * np.abs(limit))
+        rows, which = np.flatnonzero(unsure.any(axis=0)), np.flatnonzero(unsure.any(axis=1))
+        if not len(rows):
+            break
+        x = np.multiply.outer(span * steps[rows], 0.5 - 0.5 * np.cos(ANGLES))
+        angles, names = some_of(arcs, rows).beside(np.array([end]), x), tuple(signals[k] for k in which)
+        terms, own = values_at(group.some(rows), names, angles, threads) @ TERMS, np.ix_(which, rows)
+        last = np.abs(terms[..., -2:]).sum(axis=-1)
+        better = asked[own] & (last < error[own])
+        limit[own] = np.where(better, terms.sum(axis=-1), limit[own])
+        error[own] = np.where(better, last, error[own])
+        samples[own] += NODES
+    return limit, error, samples
+
+
+def _steps(group: Group, arcs: Arcs) -> Array:
+    """Return the steps in x (arc, end) of a search along paths, by the distances to other toggles and near-toggles."""
+    frame = group.number(group.scene.mechanism.near_toggle_angle)[:, None]
+    middles, widths = group.near_toggles()
+    singular = [*(ends - frame for ends in arc_ends(group)), np.where(np.isfinite(widths), middles, np.nan)]
+    middle, half = 0.5 * (arcs.start + arcs.end), 0.5 * arcs.length
+    return steps_at_ends(np.concatenate(singular, axis=1), middle, half, group.scene.period_of_motion)
