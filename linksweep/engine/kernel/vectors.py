@@ -75,7 +75,7 @@ def width() -> int:
     return 16 if "+avx512f" in features else 8 if "+avx" in features else 4
 
 
-def write_function(builder: Any, function: FunctionType, passed: Mapping[str, Any], streamed: str = "") -> None:
+def write_function(builder: Any, function: FunctionType, passed: Mapping[str, Any], streamed: str) -> None:
     """Write the instructions of a function of these arguments; rows of the array that is `streamed` are stored past the
     caches."""
     writer, arguments = _Writer(builder), list[Any]()
