@@ -195,6 +195,32 @@ def _six_bar(random: Random, n: int) -> ls.Scene:
     return _scene(random, n, mechanism, [ls.Load("output", torque=3.0)])
 
 
+def _any_six_bar(random: Random, n: int) -> ls.Scene:
+    """Return six-bars of any lengths, most of which move over part of a turn: the second four-bar hangs on the rocker
+    of the first, so that its toggles end arcs, too, or on the crank, whose first four-bar its toggles leave alone."""
+    on_rocker = random.random() < 0.5
+    a, b, c, d, e, f, g = np.exp(random.uniform(-1.0, 1.0, (7, n)))
+    hangs = "crank A-B, coupler B-C, rocker D-C-E, rod E-F, output G-F"
+    stands = "crank A-B-E, coupler B-C, rocker D-C, rod E-F, output G-F"
+    mechanism = ls.Linkage(
+        hangs if on_rocker else stands,
+        ground={"A": (0.0, 0.0), "D": (_number(d), 0.0), "G": (_number(random.uniform(-2.0, 2.0, n)), _number(g))},
+        points={"E": (_number(e), random.uniform(-180.0, 180.0))},
+        branch=_branches(random, "C", "F"),
+        **{
+            role: _link(random, length)
+            for role, length in {
+                "crank": a,
+                "coupler": b,
+                "rocker": c,
+                "rod": f,
+                "output": random.permutation(f),
+            }.items()
+        },
+    )
+    return _scene(random, n, mechanism, [ls.Load("output", torque=3.0)])
+
+
 def _press(random: Random, n: int) -> ls.Scene:
     """Return knuckle-joint presses with friction whose crank turns fully: the lower link is longer than the upper and
     the offset of the guide together."""
@@ -304,6 +330,7 @@ FAMILIES = {
     "slider-crank with friction": Family(_slider_crank(friction=True), 90.0),
     "inverted slider-crank": Family(_inverted_slider_crank),
     "Watt six-bar": Family(_six_bar, share=0.05),
+    "six-bar of any lengths": Family(_any_six_bar, share=0.05),
     "knuckle-joint press with friction": Family(_press, share=0.05),
     "four-bar with a table": Family(_with_table(_four_bar, "rocker")),
     "slider-crank with friction and a table": Family(_with_table(_slider_crank(friction=True), "slider"), 90.0),
