@@ -37,7 +37,7 @@ fuzzed = settings(
 )
 THETA2 = [0.0, 77.7, 200.0, 300.0]
 TOLERANCE = 1e-11
-MESSAGE = re.compile(r"[a-z]\w*(\[\d+\])*(\.\w+(\[\d+\])*)*( = |: | has | is | holds | depends )")
+MESSAGE = re.compile(r"[A-Za-z]\w*(\[\d+\])*(\.\w+(\[\d+\])*)*( = |: | has | is | holds | depends )")
 UNKNOWN = r".*: (unknown key|belongs to the mechanism|belongs at the top)"
 MESSAGE_OF_A_FILE = re.compile(
     rf".*scene.toml(:\d+: (not TOML|{MESSAGE.pattern}|{UNKNOWN})|: is not a text file in UTF-8)", re.DOTALL
