@@ -3,16 +3,14 @@
 The grammar is one decimal number, a space, one unit. A unit is a product of factors, in any order, then its
 divisors: ``lbf in s^2``, ``rad/s^2``; also ``*``, ``·``, ``-`` between factors, ``²``, ``**2`` for ``^2``.
 
-pint defines the units, but never reads the text: alone it takes "Nm" for number/m, "1 1/2 in" for half an inch
-and "2,5 mm" for 25 mm. So a short list has the spellings that each kind of quantity may use; any other is an error
-that states what to write. The arithmetic is in fractions: where a unit is defined exactly the result is the
-correctly rounded float ("8 cm" is 0.08, to the bit). pint is slow to import, so its factors for the units on the
-list are stored in the user's cache folder.
+A short list has the spellings that each kind of quantity may use; any other is an error that states what to write.
+pint would take "Nm" for number/m, "1 1/2 in" for half an inch and "2,5 mm" for 25 mm. The arithmetic is in fractions:
+where a unit is defined exactly the result is the correctly rounded float ("8 cm" is 0.08, to the bit). The sizes of
+the listed units stand here, because pint takes half a second to start; it is asked about other units that arrays state.
 """
 
 from __future__ import annotations
 
-import hashlib
 import json
 import math
 import re
@@ -21,10 +19,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache, lru_cache
-from importlib.metadata import version
 from typing import Any
 
-from linksweep.base.cache import keep, recall
 from linksweep.base.validate import UNITS, did_you_mean
 
 
@@ -75,8 +71,22 @@ LONGEST_TEXT, LONGEST_UNIT = 1000, 60
 """Characters that a number with its unit, and a unit, may have."""
 FINITE = "must be a finite number, at most 1.8e308"
 
-# Units that pint lacks. A blob is the inch's slug: 1 lbf gives it 1 in/s^2.
-_NOT_IN_PINT = ("blob = lbf * s^2 / in", "rev = revolution")
+_PI = Fraction("3.14159265358979323846264338327950288419716939937510")
+_INCH, _POUND, _GRAVITY = Fraction("0.0254"), Fraction("0.45359237"), Fraction("9.80665")
+_FOOT, _LBF = 12 * _INCH, _POUND * _GRAVITY
+_PREFIXES = {"M": 6, "k": 3, "": 0, "c": -2, "m": -3, "u": -6}
+_POWERS = {"m": 0, "g": -3, "s": 0, "N": 0, "Pa": 0, "bar": 5, "W": 0, "J": 0, "V": 0, "A": 0, "ohm": 0}
+_SIZES = {
+    prefix + unit: Fraction(10) ** (power + own) for unit, own in _POWERS.items() for prefix, power in _PREFIXES.items()
+} | {
+    "in": _INCH, "ft": _FOOT, "mph": 5280 * _FOOT / 3600, "g0": _GRAVITY, "min": Fraction(60), "h": Fraction(3600),
+    "tonne": Fraction(1000), "lb": _POUND, "oz": _POUND / 16,
+    "slug": _LBF / _FOOT, "blob": _LBF / _INCH,  # 1 lbf gives a blob, the inch's slug, 1 in/s^2
+    "rad": Fraction(1), "deg": _PI / 180, "rev": 2 * _PI, "rpm": 2 * _PI / 60,
+    "lbf": _LBF, "kgf": _GRAVITY, "psi": _LBF / _INCH**2, "atm": Fraction(101325),
+    "hp": 550 * _FOOT * _LBF, "kWh": Fraction(3_600_000), "cal": Fraction("4.184"), "%": Fraction(1, 100),
+}  # fmt: skip
+"""Sizes of units in SI, of angles in rad: all are exact, but for those with pi, of which these are 50 digits."""
 
 # Common slips for a unit of another kind, or of none: "ft lb" for a torque, "1/s" for rad/s.
 _MEANT = {r"\blbm?\b": "lbf", r"\bHz\b": "rev/s", r"^1/s\b": "rad/s", r"^[gG]$": "g0"}
@@ -311,36 +321,23 @@ def _finite(number: Any) -> float:
 
 
 def _factor(spelling: str, kind: str) -> Fraction:
-    """Return one such unit in SI; pint's pi has 50 digits, all else is exact."""
-    return _all_factors()[f"{spelling} in {KINDS[kind].unit}"]
+    """Return the size of a listed unit in the SI unit of its kind."""
+    return _size(spelling) / _size(KINDS[kind].unit)
 
 
 @cache
-def _all_factors() -> dict[str, Fraction]:
-    """Return all factors by unit, as pint defines them; they are cached for later processes."""
-    digest = hashlib.sha256(repr((version("pint"), _NOT_IN_PINT, KINDS)).encode()).hexdigest()
-    name = f"units_{digest[:24]}"
-    if kept := recall(name):
-        return {unit: Fraction(factor) for unit, factor in json.loads(kept).items()}
-    pairs = [(spelling, kind.unit) for kind in KINDS.values() for spelling in kind.spellings]
-    factors = {f"{spelling} in {si}": _converted(spelling, si) for spelling, si in pairs}
-    keep(name, json.dumps({unit: str(factor) for unit, factor in factors.items()}, indent=1).encode())
-    return factors
-
-
-def _converted(spelling: str, si: str) -> Fraction:
-    one = _pint().Quantity(Fraction(1), spelling.replace(" ", "*"))
-    return Fraction(one.to("dimensionless" if si == "1" else si.replace(" ", "*")).magnitude)
+def _size(unit: str) -> Fraction:
+    """Return the size of a product of units, or of the unit "1"."""
+    factors = _factors(unit)
+    powers = () if isinstance(factors, str) else factors
+    return math.prod((_SIZES[name] ** power for name, power in powers), start=Fraction(1))
 
 
 @cache
 def _pint() -> Any:
-    import pint  # here, because it takes long and most scenes have plain numbers, or units that are cached
+    import pint  # here, because it takes long to start
 
-    registry: Any = pint.UnitRegistry(non_int_type=Fraction)
-    for definition in _NOT_IN_PINT:
-        registry.define(definition)
-    return registry
+    return pint.UnitRegistry(non_int_type=Fraction)
 
 
 def _words(kind: str) -> str:

@@ -5,6 +5,7 @@ from fractions import Fraction
 
 import mpmath
 import numpy as np
+import pint
 import pytest
 
 from linksweep.base import units
@@ -261,53 +262,15 @@ def test_design_axis_reports_all_problems(table, problems):
         assert line.startswith(problem)
 
 
-# ------------------------------------------------------------------------------- factors of pint in the cache
+# ----------------------------------------------------------------------------------------------- sizes of units
 
 
-@pytest.fixture
-def folder(tmp_path, monkeypatch):
-    """Return a cache folder with the factors of all units, not yet read by this process."""
-    monkeypatch.setenv("LINKSWEEP_CACHE_DIR", str(tmp_path / "cache"))
-    units._all_factors.cache_clear()
-    quantity("8 cm", "length")
-    units._all_factors.cache_clear()
-    yield tmp_path / "cache"
-    units._all_factors.cache_clear()
-
-
-def pint_is_called(monkeypatch):
-    """Return whether pint is called for a unit's factor; the numbers must be right either way."""
-    requested = []
-    monkeypatch.setattr(units, "_pint", lambda pint=units._pint: requested.append(1) or pint())
-    for text, kind, expected in EXACT:
-        assert quantity(text, kind) == float(expected)
-    return bool(requested)
-
-
-def test_a_second_process_reads_factors_from_the_cache(folder, monkeypatch):
-    assert not pint_is_called(monkeypatch)
-
-
-@pytest.mark.parametrize("damage", [lambda b: b[:-9], lambda b: b.replace(b"127", b"128"), lambda b: b"\xff" + b])
-def test_a_damaged_file_is_written_again(folder, monkeypatch, damage):
-    (file,) = folder.glob("units_*")
-    whole = file.read_bytes()
-    file.write_bytes(damage(whole))
-    assert pint_is_called(monkeypatch)
-    assert file.read_bytes() == whole
-
-
-@pytest.mark.parametrize("change", ["another pint", "another list"])
-def test_a_cache_of_another_list_or_pint_is_not_used(folder, monkeypatch, change):
-    if change == "another pint":
-        monkeypatch.setattr(units, "version", lambda _: "0.0")
-    else:
-        monkeypatch.setattr(units, "_NOT_IN_PINT", (*units._NOT_IN_PINT, "furlong = 660 * foot"))
-    assert pint_is_called(monkeypatch)
-    assert len(list(folder.glob("units_*"))) == 2
-
-
-def test_without_a_folder_pint_is_called(folder, monkeypatch):
-    (folder.parent / "file").write_text("not a folder")
-    monkeypatch.setenv("LINKSWEEP_CACHE_DIR", str(folder.parent / "file"))
-    assert pint_is_called(monkeypatch)
+def test_listed_units_have_the_sizes_that_pint_gives_them():
+    registry = pint.UnitRegistry(non_int_type=Fraction)
+    registry.define("blob = lbf * s^2 / in")
+    registry.define("rev = revolution")
+    for kind in KINDS.values():
+        for spelling in kind.spellings:
+            si = "dimensionless" if kind.unit == "1" else kind.unit.replace(" ", "*")
+            size = registry.Quantity(Fraction(1), spelling.replace(" ", "*")).to(si).magnitude
+            assert units._size(spelling) / units._size(kind.unit) == size, spelling

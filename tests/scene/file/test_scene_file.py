@@ -376,6 +376,7 @@ def test_a_changed_line_gives_a_scene_or_messages(number):
             assert parse_scene(write_scene(scene)) == scene
 
 
-def test_plain_numbers_need_no_pint():
+def test_numbers_and_texts_with_units_need_no_pint():
     read = f"from linksweep.scene.file.reading import parse_scene; parse_scene({write_scene(SCENE)!r})"
-    subprocess.run([sys.executable, "-c", f"import sys; {read}; assert 'pint' not in sys.modules"], check=True)
+    texts = "from linksweep.base.units import quantity; quantity('8 cm', 'length')"
+    subprocess.run([sys.executable, "-c", f"import sys; {read}; {texts}; assert 'pint' not in sys.modules"], check=True)
