@@ -6,7 +6,6 @@ current peak. Limits at the ends of arcs are extrapolated; poles are known by th
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
@@ -21,8 +20,14 @@ from linksweep.results.peak_search.paths import QUARTER, Part, Paths
 from linksweep.results.peak_search.poles import poles
 from linksweep.scene.pairs import Array, Places, in_period
 
-NODES = 8
-"""Samples near the end of an arc from which a signal is extrapolated to the end."""
+NODES, SPANS = 10, (25.0, 5.0, 1.0, 0.2, 0.04)
+"""Samples before a toggle from which a signal is extrapolated, and the distances from it of the farthest ones, in steps
+of a path. The first is a quarter of that to the next toggle: others may hide beyond."""
+ALLOWED = 1e-10
+"""Error of a limit, relative to it, from which on samples are taken closer to the toggle."""
+ANGLES = (np.arange(NODES) + 0.5) * (np.pi / NODES)
+TERMS = np.cos(np.outer(ANGLES, np.arange(NODES))) * np.append(1.0, np.full(NODES - 1, 2.0)) / NODES
+"""Chebyshev's angles of samples, and the terms of the polynomial through values there, at the angle 0."""
 PROBE, LEAST_PROBE = 0.025, 1e-5
 """Distance from the end, as part of a step and at least, of the sample that shows whether a signal is unbounded."""
 NEAR_PERIOD = 5e-6
@@ -225,34 +230,56 @@ def _with_limits(group: Group, signals: tuple[str, ...], paths: Paths, best: Bes
     """Return the highest values on arcs, raised to the limits at their ends: inf where a signal is unbounded."""
     value, angle, bound, samples = best
     for end, side in enumerate((-1.0, 1.0)):
-        limit, error = _limits(group, signals, paths, end, np.abs(value), threads)
+        limit, error, more = (numbers.T for numbers in _limits(group, signals, paths, end, value.T, threads))
         raised = limit > value
         edge = paths.middle + side * paths.half
-        value, bound = np.where(raised, limit, value), np.where(raised, error, bound)
+        value, bound, samples = np.where(raised, limit, value), np.where(raised, error, bound), samples + more
         angle = np.where(raised, angle_in_period(edge, group.scene.period)[:, None], angle)
-    return value, angle, bound, samples + 2 * (NODES + 2)
+    return value, angle, bound, samples
 
 
 def _limits(
     group: Group, signals: tuple[str, ...], paths: Paths, end: int, peak: Array, threads: int | None
-) -> tuple[Array, Array]:
-    """Return limits (path, signal) at one end of arcs, and their errors, by polynomials through samples before it."""
+) -> tuple[Array, Array, Array]:
+    """Return limits (signal, path) at one end of arcs that may exceed a peak, their errors, and counts of samples."""
     step = paths.steps[:, end]
+
+    def values_at(which: Array, rows: Array, x: Array) -> Array:
+        names, path = tuple(signals[k] for k in which), np.repeat(rows, x.shape[1])
+        places = (2 * end - 1) * (QUARTER - x).ravel()
+        return group.values(names, paths.row[path], paths.angles(path, places), threads).reshape(-1, *x.shape)
+
     probes = np.maximum(PROBE * step, LEAST_PROBE)[:, None] * [1.0, 0.1]
-    before = np.concatenate([step[:, None] * np.arange(1.0, NODES + 1), probes], axis=1)
-    path = np.repeat(np.arange(len(step)), before.shape[1])
-    x = (2 * end - 1) * (QUARTER - before).ravel()
-    values = group.values(signals, paths.row[path], paths.angles(path, x), threads)
-    values = values.reshape(len(signals), *before.shape).swapaxes(0, 1)
-    probe, closer = values[..., -2], values[..., -1]
-    # ten times closer in x: a signal that varies as 1/x is ten times as large, a signal with a limit hardly changes
-    infinite = (np.abs(closer) > 5.0 * np.abs(probe)) & (np.abs(closer) > 0.1 * np.nan_to_num(peak))
-    limit, other = (_extrapolated(values[..., :n]) for n in (NODES, NODES - 1))
-    error = np.where(infinite, 0.0, np.abs(limit - other))
-    return np.where(infinite, np.copysign(np.inf, closer), limit), error
+    probe, closer = np.moveaxis(values_at(np.arange(len(signals)), np.arange(len(step)), probes), 2, 0)
+    with np.errstate(invalid="ignore"):
+        # ten times closer in x: a signal that varies as 1/x is ten times as large, a signal with a limit hardly changes
+        infinite = (np.abs(closer) > 5.0 * np.abs(probe)) & (np.abs(closer) > 0.1 * np.nan_to_num(np.abs(peak)))
+        highest = closer + np.abs(closer - probe)
+        limit, error, samples = limits_at_toggles(values_at, step, ~infinite & (highest >= peak))
+        limit = np.where(infinite, np.copysign(np.inf, closer), np.minimum(limit, highest))
+    return limit, error, samples + probes.shape[1]
 
 
-def _extrapolated(values: Array) -> Array:
-    """Return the value at 0 of the polynomial through values at 1, 2, 3, … steps."""
-    n = values.shape[-1]
-    return (values * [(-1.0) ** (k + 1) * math.comb(n, k) for k in range(1, n + 1)]).sum(axis=-1)
+def limits_at_toggles(
+    values_at: Callable[[Array, Array, Array], Array], steps: Array, asked: Array
+) -> tuple[Array, Array, Array]:
+    """Return the limits of signals at one end of arcs where they are `asked` for (signal, arc), −inf elsewhere, their
+    errors, and counts of samples: the limits of polynomials through samples before the end, with their last terms.
+
+    `values_at` returns values (signal, arc, place) of signals and arcs, by their numbers, at distances x (arc, place).
+    """
+    limit, error, samples = np.where(asked, 0.0, -np.inf), np.where(asked, np.inf, 0.0), np.zeros(asked.shape)
+    for span in SPANS:
+        with np.errstate(invalid="ignore"):
+            unsure = asked & ~(error <= ALLOWED * np.abs(limit))
+        rows, which = np.flatnonzero(unsure.any(axis=0)), np.flatnonzero(unsure.any(axis=1))
+        if not len(rows):
+            break
+        x = np.multiply.outer(span * steps[rows], 0.5 - 0.5 * np.cos(ANGLES))
+        terms, own = values_at(which, rows, x) @ TERMS, np.ix_(which, rows)
+        last = np.abs(terms[..., -2:]).sum(axis=-1)
+        better = asked[own] & (last < error[own])
+        limit[own] = np.where(better, terms.sum(axis=-1), limit[own])
+        error[own] = np.where(better, last, error[own])
+        samples[own] += NODES
+    return np.where(error < np.inf, limit, -np.inf), error, samples

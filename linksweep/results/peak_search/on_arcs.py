@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from linksweep.engine.peaks.samples import HALF
-from linksweep.results.peak_search.along_paths import SignalPeak, angle_in_period, put
+from linksweep.results.peak_search.along_paths import SignalPeak, angle_in_period, limits_at_toggles, put
 from linksweep.results.peak_search.arcs import NEAREST, arc_ends, steps_at_ends
 from linksweep.results.peak_search.groups import Group, groups
 from linksweep.results.peak_search.paths import distinct
@@ -44,14 +44,6 @@ BESIDE_TOGGLE = 1e-4
 """Part of an arc that is a piece of its own beside each toggle."""
 ROUNDING, SHORTEST = 1e-12, 1e-6
 """Distance of a sample from a toggle in which rounding does not show, and the length of the shortest arcs [degree]."""
-NODES, SPANS = 10, (25.0, 5.0, 1.0, 0.2, 0.04)
-"""Samples before a toggle from which a signal is extrapolated, and the distances from it of the farthest ones, in steps
-of a search along paths. The first is a quarter of that to the next toggle: others may hide beyond."""
-ALLOWED = 1e-10
-"""Error of a limit, relative to it, from which on samples are taken closer to the toggle."""
-ANGLES = (np.arange(NODES) + 0.5) * (np.pi / NODES)
-TERMS = np.cos(np.outer(ANGLES, np.arange(NODES))) * np.append(1.0, np.full(NODES - 1, 2.0)) / NODES
-"""Chebyshev's angles of samples, and the terms of the polynomial through values there, at the angle 0."""
 
 
 class Arcs(NamedTuple):
@@ -206,27 +198,14 @@ def _inside(away: Array, least: Array | float, length: Array) -> Array:
 def _limits(
     group: Group, arcs: Arcs, end: int, signals: tuple[str, ...], asked: Array, threads: int | None
 ) -> tuple[Array, Array, Array]:
-    """Return the limits of signals at one end of arcs where they are `asked` for (signal, arc), −inf elsewhere, their
-    errors, and counts of samples: the limits of polynomials through samples before the end, with their last terms."""
-    limit, error, samples = np.where(asked, 0.0, -np.inf), np.where(asked, np.inf, 0.0), np.zeros(asked.shape)
-    if not asked.any():
-        return limit, error, samples
-    steps = _steps(group, arcs)[:, end]
-    for span in SPANS:
-        with np.errstate(invalid="ignore"):
-            unsure = asked & ~(error <= ALLOWED * np.abs(limit))
-        rows, which = np.flatnonzero(unsure.any(axis=0)), np.flatnonzero(unsure.any(axis=1))
-        if not len(rows):
-            break
-        x = np.multiply.outer(span * steps[rows], 0.5 - 0.5 * np.cos(ANGLES))
-        angles, names = some_of(arcs, rows).beside(np.array([end]), x), tuple(signals[k] for k in which)
-        terms, own = values_at(group.some(rows), names, angles, threads) @ TERMS, np.ix_(which, rows)
-        last = np.abs(terms[..., -2:]).sum(axis=-1)
-        better = asked[own] & (last < error[own])
-        limit[own] = np.where(better, terms.sum(axis=-1), limit[own])
-        error[own] = np.where(better, last, error[own])
-        samples[own] += NODES
-    return limit, error, samples
+    """Return `limits_at_toggles` at one end of each arc."""
+
+    def at_distances(which: Array, rows: Array, x: Array) -> Array:
+        angles = some_of(arcs, rows).beside(np.array([end]), x)
+        return values_at(group.some(rows), tuple(signals[k] for k in which), angles, threads)
+
+    steps = _steps(group, arcs)[:, end] if asked.any() else np.zeros(len(arcs.row))
+    return limits_at_toggles(at_distances, steps, asked)
 
 
 def _steps(group: Group, arcs: Arcs) -> Array:
