@@ -142,3 +142,8 @@ def by_row(rows: Array, values: Array, count: int) -> Array:
     table = np.full((count, nth.max(initial=-1) + 1, *values.shape[1:]), np.nan)
     table[rows, nth] = values[order]
     return table
+
+
+def in_order(table: Array) -> Array:
+    """Return a table with the numbers of each row in order; each NaN becomes another of the row's last number."""
+    return np.fmax.accumulate(np.sort(table, axis=1), axis=1)

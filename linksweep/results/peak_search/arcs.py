@@ -22,7 +22,6 @@ from linksweep.results.peak_search.paths import (
     Paths,
     approach_samples,
     both_sides,
-    in_order,
     jump_angles,
     kinks,
     near_toggle_samples,
@@ -30,7 +29,7 @@ from linksweep.results.peak_search.paths import (
     windows_about,
 )
 from linksweep.scene.curves.quick import STEP
-from linksweep.scene.pairs import Array
+from linksweep.scene.pairs import Array, in_order
 from linksweep.scene.scene import Scene
 
 PER_ARC = 192
@@ -141,7 +140,7 @@ def _samples_and_cuts(group: Group, middle: Array, half: Array, at_jumps: Array,
     shared = np.broadcast_to(np.concatenate([even, near, -near]), (len(middle), len(even) + 2 * len(near)))
     breaks = np.concatenate([at_jumps, kinks(group)], axis=1)
     special = near_toggle_samples(group), both_sides(breaks), both_sides(at_jumps)
-    graded, sides, jumps = (_filled(_on_arc(angles, middle, half, period)) for angles in special)
+    graded, sides, jumps = (_on_arc(angles, middle, half, period) for angles in special)
     quick = _on_arc(_quick_and_even(group), middle, half, period)
     close = _on_arc(approach_samples(group, _angles(middle, half, even)), middle, half, period)
     samples = [shared, graded, sides, quick, *([close] if closely else [])]
@@ -169,12 +168,6 @@ def _on_arc(angles: Array, middle: Array, half: Array, period: float) -> Array:
     with np.errstate(invalid="ignore", divide="ignore"):  # an angle beyond the arc, or an arc of no length
         x = np.arcsin(away / half[:, None])
     return np.where(np.abs(x) < QUARTER - NEAREST, x, np.nan)
-
-
-def _filled(x: Array) -> Array:
-    """Return places on arcs with each NaN replaced by an arbitrary place of its own."""
-    arbitrary = (np.arange(x.shape[1]) + 0.3) * (np.pi / (x.shape[1] + 1)) - QUARTER
-    return np.where(np.isnan(x), arbitrary, x)
 
 
 def steps_at_ends(toggles: Array, middle: Array, half: Array, period: float) -> Array:

@@ -25,7 +25,7 @@ from linksweep.results.compute import compute, zeros_of
 from linksweep.results.peak_search.between import EVERYWHERE, NEVER, PARTLY
 from linksweep.results.peak_search.curves import SEAM, WIDE, Curves, Extremes, parabola, zeros_and_extremes
 from linksweep.results.peak_search.side_by_side import close_at, search_side_by_side
-from linksweep.scene.pairs import Array, by_row, different_designs, in_period, joined, some_of
+from linksweep.scene.pairs import Array, by_row, different_designs, in_order, in_period, joined, some_of
 from linksweep.scene.scene import Scene
 
 AT_ONCE = 512
@@ -262,7 +262,7 @@ def on_turns(dense: Array, period: float) -> Array:
     """Return places (arc, sample) [degree] on whole periods: even ones, these, and the first ones again at the end."""
     count = EVEN * round(period / 360.0)
     even = np.broadcast_to((np.arange(count) + OFF_ROUND) * (period / count), (len(dense), count))
-    x = np.sort(np.concatenate([even, period * _filled(in_period(dense, period) / period)], axis=1), axis=1)
+    x = in_order(np.concatenate([even, in_period(dense, period)], axis=1))
     return np.concatenate([x, x[:, :SEAM] + period], axis=1)
 
 
@@ -275,8 +275,7 @@ def on_arcs(start: Array, end: Array, dense: Array, period: float) -> Array:
     even = 0.5 - 0.5 * np.cos(np.pi * (np.arange(count) + 0.5) / count)
     ends = NEAREST * 2.0 ** np.arange(np.log2(even[0] / NEAREST))
     shared = np.broadcast_to(np.concatenate([ends, even, 1.0 - ends]), (len(dense), count + 2 * len(ends)))
-    dense = _filled(np.where(along < 1.0, along, np.nan))
-    return start + length * np.sort(np.concatenate([shared, dense], axis=1), axis=1)
+    return start + length * in_order(np.concatenate([shared, np.where(along < 1.0, along, np.nan)], axis=1))
 
 
 def graded_samples(angles: Array, widths: Array) -> Array:
@@ -285,8 +284,3 @@ def graded_samples(angles: Array, widths: Array) -> Array:
     after = 2.0 * np.degrees(np.arctan(grades()))[np.clip(1 - scale, 0, GRADES - 1)]
     steps = np.concatenate([-after[..., :0:-1], after[..., :-1]], axis=-1)
     return (angles[..., None] + steps).reshape(len(angles), angles.shape[1] * steps.shape[2])
-
-
-def _filled(along: Array) -> Array:
-    """Return places from 0 to 1 with each NaN replaced by an arbitrary place of its own."""
-    return np.where(np.isnan(along), (np.arange(along.shape[1]) + 0.3) / (along.shape[1] + 1.0), along)

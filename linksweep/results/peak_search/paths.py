@@ -23,7 +23,7 @@ from linksweep.results.peak_search.approaches import (
 from linksweep.results.peak_search.friction.contacts import contact_angles
 from linksweep.results.peak_search.groups import Group, crossing
 from linksweep.results.peak_search.limits import graded_samples
-from linksweep.scene.pairs import Array, by_row, in_period, joined
+from linksweep.scene.pairs import Array, by_row, in_order, in_period, joined
 
 PER_TURN = 720
 """Even samples of a turn: loads over the angle may vary as quickly as an engine's indicator diagram."""
@@ -108,12 +108,6 @@ def turns(group: Any) -> Paths:
 def thinned(angles: Array) -> Array:
     """Return every n-th angle (design, angle), with n such that about MOST_CUTS are left at most."""
     return angles[:, :: 1 + angles.shape[1] // MOST_CUTS]
-
-
-def in_order(x: Array) -> Array:
-    """Return places (path, place) in order; each NaN becomes another first place."""
-    x = np.sort(x, axis=1)
-    return np.sort(np.where(np.isnan(x), x[:, :1], x), axis=1)
 
 
 def neighbours(x: Array, period: float) -> tuple[Array, Array]:

@@ -137,3 +137,14 @@ FOUR = ls.MultiCylinder(ls.example("engine"), [0, 540, 180, 360])
 )
 def test_refusals(scene, words, message):
     assert message in refusal(lambda: ls.peaks(scene, **words))[0]
+
+
+def test_peaks_of_a_part_have_the_same_bits_among_designs_with_more_jams():
+    """Friction wedges the rougher designs at angles which the others do not have."""
+    scene = replaced(
+        ls.example("crank-shaper"), {"guides.slide.friction": xr.DataArray(np.geomspace(1e-3, 1.0, 20), dims="d")}
+    )
+    every = ls.peaks(scene, ["F43"], between=(313.6, 517.2))
+    for design in (3, 10, 19):
+        alone = ls.peaks(ls.scene_at(scene, d=design), ["F43"], between=(313.6, 517.2))
+        np.testing.assert_array_equal(every.F43_peak[design], alone.F43_peak)

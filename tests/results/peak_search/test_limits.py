@@ -224,17 +224,33 @@ SIDE_BY_SIDE = {
 }
 
 
+@pytest.fixture
+def along_arcs_alone(monkeypatch):
+    """Let limits be sought along arcs, as those are that the search side by side leaves."""
+    nothing = Events(*(np.empty(0, dtype=kind) for kind in (int, float, int, float)))
+    left = np.empty(0, dtype=int), nothing, nothing.place
+    return lambda: monkeypatch.setattr("linksweep.results.peak_search.limits.search_side_by_side", lambda *_: left)
+
+
+def test_limits_along_arcs_have_the_same_bits_among_any_others(along_arcs_alone):
+    along_arcs_alone()
+    scene = linkages("klann-leg", 3.0)
+    every = find_limits(scene, scene.table.limits, np.arange(30))
+    for design in (3, 17, 29):
+        alone = find_limits(scene, scene.table.limits, np.array([design]))
+        for one, all_of in zip(alone, every, strict=True):
+            own, other = (np.sort(np.atleast_1d(x).ravel()) for x in (one[0], all_of[design]))
+            np.testing.assert_array_equal(own[np.isfinite(own)], other[np.isfinite(other)])
+
+
 @pytest.mark.parametrize("name", SIDE_BY_SIDE)
-def test_limits_found_side_by_side_are_those_of_the_search_of_arcs(name, monkeypatch):
+def test_limits_found_side_by_side_are_those_of_the_search_of_arcs(name, along_arcs_alone):
     scene, designs = SIDE_BY_SIDE[name](), np.arange(150)
     by_both, rows = (
         find_limits(scene, scene.table.limits, designs),
         search_side_by_side(scene, scene.table.limits, designs)[0],
     )
-    nothing = Events(*(np.empty(0, dtype=kind) for kind in (int, float, int, float)))
-    monkeypatch.setattr(
-        "linksweep.results.peak_search.limits.search_side_by_side", lambda *_: (designs[:0], nothing, nothing.place)
-    )
+    along_arcs_alone()
     searched = find_limits(scene, scene.table.limits, designs)
     np.testing.assert_array_equal(by_both.assembly, searched.assembly)
     assert len(rows) > 147

@@ -14,8 +14,8 @@ from linksweep.engine.quantity import LAST_UNJAMMED
 from linksweep.engine.run import Field
 from linksweep.results.peak_search.between import EVERYWHERE
 from linksweep.results.peak_search.groups import Group, all_at_once, different, empty_over_all, groups
-from linksweep.results.peak_search.paths import ASIDE, OFF_ROUND, in_order, jump_angles
-from linksweep.scene.pairs import Array, by_row
+from linksweep.results.peak_search.paths import ASIDE, OFF_ROUND, jump_angles
+from linksweep.scene.pairs import Array, by_row, in_order
 from linksweep.scene.scene import Scene
 
 STEP = 2.0
