@@ -82,6 +82,11 @@ def put(peak: SignalPeak, group: Any, numbers: tuple[Array, ...]) -> None:
         field.values.reshape(-1)[at] = values
 
 
+def raise_to(peak: SignalPeak, group: Any, numbers: tuple[Array, ...]) -> None:
+    """Replace a signal's peaks of a group's designs, some of which may share one, by the highest of these numbers."""
+    _raise(peak, _flat_index(peak.value, group.places, len(group.designs)), *numbers)
+
+
 def follow(group: Any, peaks: dict[str, SignalPeak], all_paths: tuple[PathsOf, ...], threads: int | None) -> None:
     """Search along all paths of a group's designs, and replace the peaks that are exceeded."""
     for paths in (paths_of(group) for paths_of in all_paths):

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from linksweep.engine.peaks.samples import HALF
-from linksweep.results.peak_search.along_paths import SignalPeak, angle_in_period, limits_at_toggles, put
+from linksweep.results.peak_search.along_paths import SignalPeak, angle_in_period, limits_at_toggles, raise_to
 from linksweep.results.peak_search.arcs import NEAREST, arc_ends, steps_at_ends
 from linksweep.results.peak_search.groups import Group, groups
 from linksweep.results.peak_search.paths import distinct
@@ -102,7 +102,7 @@ def follow_arcs(scene: Scene, designs: Array, peaks: dict[str, SignalPeak], thre
         frame = part.number(scene.mechanism.near_toggle_angle)
         for k, peak in enumerate(peaks.values()):
             value, angle, bound, samples = (table[k, rows] for table in numbers)
-            put(peak, part, (value, angle_in_period(angle + frame, scene.period), bound, samples))
+            raise_to(peak, part, (value, angle_in_period(angle + frame, scene.period), bound, samples))
         left.append(group.designs[~known])
     return np.sort(np.concatenate(left))
 

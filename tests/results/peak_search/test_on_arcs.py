@@ -11,6 +11,7 @@ import linksweep as ls
 from benchmarks.accuracy import missed
 from linksweep.results.peak_search import exact
 from linksweep.results.peak_search.limits import limits_of
+from linksweep.scene.parameters import replaced
 
 LINKAGES = {
     "watt-2": (("omega4", "Ex", "F12x", "T12"), (1.2, 2.5)),
@@ -87,3 +88,14 @@ def test_limits_where_a_later_dyad_toggles_are_values_of_the_four_bar_before_it(
         assert stopped.sum() > 0.3 * designs or sign < 0.0
         speed = float(scene.omega2) * rocker_speed(at, lengths, 0.113, 0.05, 0.126)
         np.testing.assert_allclose(peaks[value].values[stopped], speed[stopped], rtol=3e-11)
+
+
+@pytest.mark.parametrize("couplers", [[0.22, 0.09], [0.09, 0.22], [0.22, 0.3], [0.3, 0.22]])
+def test_a_signal_that_designs_share_has_the_highest_peak_on_the_arcs_of_all(couplers):
+    press = replace(ls.example("press"), loads=[])
+    scene = replaced(press, {"coupler.length": xr.DataArray(couplers, dims="design"), "crank.length": 0.3})
+    checks, peaks = ls.check(scene), ls.peaks(scene, ["Bx"])
+    arcs = np.stack([checks.arc_start, checks.arc_end], axis=-1).reshape(-1, 2)
+    angles = np.radians(np.concatenate([np.linspace(*arc, 10_001) for arc in arcs if np.isfinite(arc).all()]))
+    assert peaks.Bx_max == pytest.approx(0.3 * np.cos(angles).max(), rel=1e-7)
+    assert peaks.Bx_min == pytest.approx(0.3 * np.cos(angles).min(), rel=1e-7)
