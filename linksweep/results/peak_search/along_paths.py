@@ -281,10 +281,11 @@ def limits_at_toggles(
         if not len(rows):
             break
         x = np.multiply.outer(span * steps[rows], 0.5 - 0.5 * np.cos(ANGLES))
-        terms, own = values_at(which, rows, x) @ TERMS, np.ix_(which, rows)
+        # no product of matrices, whose bits may depend on how many designs there are
+        terms, own = (values_at(which, rows, x)[..., None] * TERMS).sum(axis=-2), np.ix_(which, rows)
         last = np.abs(terms[..., -2:]).sum(axis=-1)
-        better = asked[own] & (last < error[own])
+        better = unsure[own] & (last < error[own])
         limit[own] = np.where(better, terms.sum(axis=-1), limit[own])
         error[own] = np.where(better, last, error[own])
-        samples[own] += NODES
+        samples[own] += NODES * unsure[own]
     return np.where(error < np.inf, limit, -np.inf), error, samples

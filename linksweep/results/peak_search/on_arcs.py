@@ -158,17 +158,17 @@ def _highest(group: Group, arcs: Arcs, signals: tuple[str, ...], threads: int | 
 
 
 def _on_pieces(group: Group, arcs: Arcs, signals: tuple[str, ...], asked: Array, threads: int | None) -> Best:
-    """Return the highest values of signals on pieces of arcs where they are `asked` for (signal, arc); −inf or samples
-    elsewhere."""
+    """Return the highest values of signals on pieces of arcs where they are `asked` for (signal, arc); else −inf."""
     best = Best(np.full(asked.shape, -np.inf), *np.zeros((3, *asked.shape)))
     rows, which = np.flatnonzero(asked.any(axis=0)), np.flatnonzero(asked.any(axis=1))
     if len(rows):
         part, names = group.some(rows), tuple(signals[k] for k in which)
         pieces = cut_at_kinks(part, _pieces(part, some_of(arcs, rows)), HALF, threads)
-        levels = np.where(asked[np.ix_(which, rows)], -np.inf, np.inf)
+        own = np.ix_(which, rows)
+        levels = np.where(asked[own], -np.inf, np.inf)
         highest = highest_on_pieces(part, pieces, names, HALF, threads, levels)
         for table, *of_signals in zip(best, *highest.values(), strict=True):
-            table[np.ix_(which, rows)] = of_signals
+            table[own] = np.where(asked[own], of_signals, table[own])
     return best
 
 

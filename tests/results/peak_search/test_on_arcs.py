@@ -99,3 +99,13 @@ def test_a_signal_that_designs_share_has_the_highest_peak_on_the_arcs_of_all(cou
     angles = np.radians(np.concatenate([np.linspace(*arc, 10_001) for arc in arcs if np.isfinite(arc).all()]))
     assert peaks.Bx_max == pytest.approx(0.3 * np.cos(angles).max(), rel=1e-7)
     assert peaks.Bx_min == pytest.approx(0.3 * np.cos(angles).min(), rel=1e-7)
+
+
+def test_a_design_on_arcs_has_the_same_bits_whichever_others_stand_beside_it():
+    """Others need limits of more signals, and closer to their toggles."""
+    scene, of = longer("watt-2", 12), [*LINKAGES["watt-2"][0], "alpha4", "omega6"]
+    together = ls.peaks(scene, of=[*of, *(f"{quantity}_samples" for quantity in of)])
+    for design in (0, 5, 11):
+        alone = ls.peaks(ls.scene_at(scene, design=design), of=[*of, *(f"{quantity}_samples" for quantity in of)])
+        for name, peak in alone.data_vars.items():
+            np.testing.assert_array_equal(peak, together[name].isel(design=design, missing_dims="ignore"), name)
