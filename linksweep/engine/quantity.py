@@ -104,11 +104,9 @@ class Table:
     @cached_property
     def maker(self) -> Mapping[str, Row | Total]:
         """Return the row that makes each name, including the negative of each quantity (its largest is minus the
-        least); of a machine without closed forms also each name's values where its status is ok, or not jammed."""
+        least), and each name's values where the status is ok, or not jammed."""
         made = {name: row for row in self.rows for name in row.outputs}
         made |= {opposite_of(q.name): Row(operator.neg, (opposite_of(q.name),), (q.name,)) for q in self.quantities}
-        if self.limits is None:
-            return made
         names = {**made, **self.quantity}  # a quantity may be an input, as omega2 is
         of_ok = {where_ok(name): Row(_where_ok, (where_ok(name),), ("status", name)) for name in names}
         free = {unless_jammed(name): Row(_unless_jammed, (unless_jammed(name),), ("status", name)) for name in names}

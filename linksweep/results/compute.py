@@ -173,13 +173,18 @@ def known_names(scene: Scene, names: tuple[str, ...], known: Callable[[str], str
     """Return the names under which the table has the known values alone of these quantities, by their own names.
 
     `known` is `where_ok` or `unless_jammed`. A quantity that lacks dims of the status keeps its own name: designs that
-    share it may differ in status. So do those of machines whose dyads are never computed beyond a failure.
+    share it may differ in status. All do of a machine whose numbers show that it is always ok.
     """
-    if scene.table.limits is None:
+    if surely_ok(scene):
         return {name: name for name in names}
     plans = {name: plan(scene.table, (name, known(name)), scene.inputs.forms) for name in names}
     same = {name: len({node.dims for node in request.outputs.values()}) == 1 for name, request in plans.items()}
     return {name: known(name) if same[name] else name for name in names}
+
+
+def jams_unknown(scene: Scene) -> bool:
+    """Return whether friction may jam a machine where no closed form tells."""
+    return scene.mechanism.rubs and scene.table.limits is not None
 
 
 def surely_ok(scene: Scene) -> bool:

@@ -20,6 +20,7 @@ from linksweep.results.compute import (
     angles_missing,
     changing_pace,
     compute,
+    jams_unknown,
     known_names,
     only_where,
     planned,
@@ -31,6 +32,7 @@ from linksweep.results.direct_dataset import dataset_of
 from linksweep.results.peak_search.along_paths import SignalPeak
 from linksweep.results.peak_search.between import EVERYWHERE, NEVER
 from linksweep.results.peak_search.exact import exact_peaks, peaks_where, peaks_within
+from linksweep.results.peak_search.groups import empty
 from linksweep.results.peak_search.limits import assembly_of
 from linksweep.results.peak_search.paths import Part
 from linksweep.results.peak_search.poles import with_dead_centres
@@ -166,16 +168,17 @@ def _exact(scene: Scene, items: list[Request], threads: int | None, part: Part |
     assembly, (signals, powers) = assembly_of(scene, threads), needed(items)
     names = tuple(dict.fromkeys((*signals, *(name for name, _ in powers))))
     sampled, own = scene.at_one_angle, {name: name for name in names}
-    if scene.mechanism.rubs:
-        own = known_names(sampled, names, unless_jammed)
-    searched = tuple(own[signal] for signal in signals)
+    known_signals = own
+    if jams_unknown(scene):
+        own, known_signals = known_names(sampled, names, unless_jammed), {s: unless_jammed(s) for s in signals}
+    searched = tuple(known_signals[signal] for signal in signals)
     if not signals:
         peaks = {}
     elif part is None:
         peaks = exact_peaks(scene, searched, assembly, threads)
     else:
         peaks = peaks_within(scene, searched, part, threads)
-    largest = {signal: peaks[own[signal]] for signal in signals}
+    largest = _of_designs_that_share(scene, {signal: peaks[known_signals[signal]] for signal in signals})
     averages = _means(scene, powers, own, part, threads)
     if part is None:
         known, by_samples = with_dead_centres(scene, assembly), scene.table.limits is not None
@@ -200,8 +203,9 @@ def _of_samples(scene: Scene, angles: ArrayLike, items: list[Request], threads: 
     grid = in_order(scene.grid(angles))
     sampled = scene.at(grid)
     signals, powers = needed(items)
-    of_ok = known_names(sampled, tuple(dict.fromkeys((*signals, *(name for name, _ in powers)))), where_ok)
-    largest = {signal: Reduction("largest_sample", of_ok[signal]) for signal in signals}
+    of_ok = known_names(sampled, tuple(name for name, _ in powers), where_ok)
+    known_signals = {signal: signal if surely_ok(sampled) else where_ok(signal) for signal in signals}
+    largest = {signal: Reduction("largest_sample", known_signals[signal]) for signal in signals}
     pace = changing_pace(sampled)
     averages = {} if pace else {p: Reduction(("mean", "mean_square")[p[1] - 1], of_ok[p[0]]) for p in powers}
     reductions = tuple(dict.fromkeys([*largest.values(), *averages.values()]))
@@ -213,12 +217,37 @@ def _of_samples(scene: Scene, angles: ArrayLike, items: list[Request], threads: 
     for signal, reduction in largest.items():
         value, angle = reduced[reduction]
         extremes[signal] = SignalPeak(value, angle, value, value)
+    extremes = _of_designs_that_share(sampled, extremes)
     averaged = {power: reduced[reduction][0] for power, reduction in averages.items()}
     averaged |= _over_time(sampled, grid, powers, pace[0], threads, solver) if pace else {}
     # a search for where designs close takes longer than samples, whose status shows enough
     by_samples = scene.table.limits is not None
     assembly = Field((), np.zeros(())) if by_samples else assembly_of(scene, threads)
     return Result(sampled, grid, assembly, by_samples, extremes, averaged)
+
+
+def _of_designs_that_share(scene: Scene, peaks: dict[str, SignalPeak]) -> dict[str, SignalPeak]:
+    """Return peaks over the dims of their signals alone: of all designs that share a signal, but differ in where its
+    values are known, the highest."""
+    own = empty(scene, tuple(peaks)) if peaks else {}
+    return {signal: _highest_over(peak, own[signal].dims) for signal, peak in peaks.items()}
+
+
+def _highest_over(peak: SignalPeak, dims: tuple[str, ...]) -> SignalPeak:
+    """Return a peak over these of its dims, the highest along the others; its bound reaches as high as any."""
+    kept = tuple(dim for dim in peak.value.dims if dim in dims)
+    if kept == peak.value.dims:
+        return peak
+    order = (*kept, *(dim for dim in peak.value.dims if dim not in dims))
+    rows = (aligned(field, order) for field in peak)
+    value, angle, bound, samples = (row.reshape(*row.shape[: len(kept)], -1) for row in rows)
+    highest = np.where(np.isnan(value), -np.inf, value).argmax(axis=-1)[..., None]
+    best, best_angle = (np.take_along_axis(row, highest, axis=-1) for row in (value, angle))
+    with np.errstate(invalid="ignore"):  # of infinite peaks
+        beyond = np.fmax.reduce(np.nan_to_num(value + bound - best, posinf=np.inf), axis=-1)
+    best, best_angle, samples = best[..., 0], best_angle[..., 0], np.fmax.reduce(samples, axis=-1)
+    numbers = best, best_angle, np.where(np.isnan(best), np.nan, beyond), samples
+    return SignalPeak(*(Field(kept, row) for row in numbers))
 
 
 def _over_time(

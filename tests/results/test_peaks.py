@@ -12,6 +12,7 @@ from oracle import random_lengths
 import linksweep as ls
 from linksweep.engine import run
 from linksweep.engine.kernel import reduce
+from linksweep.scene.parameters import replaced
 
 FORCES = ("F12", "F32", "F43", "F14")
 BAR = {"width": 0.02, "thickness": 0.02, "density": 7750.0}
@@ -131,6 +132,62 @@ def test_of_given_angles_it_is_the_largest_sample():
             value, at = reference(row.values, row.theta2.values)
             assert abs(float(peaks[peak])) == pytest.approx(abs(value), rel=1e-15)
             assert float(peaks[f"{peak}_at"]) == at
+
+
+def over(dim: str, *values: float) -> xr.DataArray:
+    return xr.DataArray([*values], dims=dim)
+
+
+PARTLY = {
+    "a crank longer than the coupler": ("press", {"crank.length": 0.3}, ("Bx", "aG2x", "F32")),
+    "a jam in all designs that share": (
+        "scissor-lift",
+        {"guides.floor.friction": 0.9, "crank.length": 0.51, "rod.width": over("d", 0.06, 0.057)},
+        ("Kx", "F15", "T12"),
+    ),
+}
+
+
+@pytest.mark.parametrize("machine", PARTLY)
+def test_peaks_count_no_angle_at_which_the_sweep_has_no_value(machine):
+    """Also of quantities that do not know why: pin B is where it is, whether the coupler reaches it or not."""
+    name, numbers, of = PARTLY[machine]
+    scene = replaced(replace(ls.example(name), loads=[]), numbers)
+    cycle, exact = ls.sweep(scene, 360, of=of), ls.peaks(scene, of=of)
+    samples, fine = ls.peaks(scene, of=of, theta2=360), ls.sweep(scene, 36_000, of=of)
+    assert (cycle.status != 0).any()
+    for name in [name for name in map(str, exact.data_vars) if name.endswith(("_peak", "_max", "_min"))]:
+        highest, dense = (_highest(ds, name) for ds in (cycle, fine))
+        assert samples[name].dims == exact[name].dims == highest.dims
+        np.testing.assert_array_equal(samples[name], -highest if name.endswith("_min") else highest)
+        short = dense - (-exact[name] if name.endswith("_min") else exact[name])
+        scale = abs(fine[name.rpartition("_")[0]]).max("theta2")
+        assert (short <= 1e-12 * scale).all()
+        assert ((short >= -0.02 * scale) | np.isinf(short)).all()
+
+
+@pytest.mark.parametrize(
+    ("machine", "numbers", "quantity"),
+    [
+        ("engine", {"rod.length": 0.055, "friction": 1.5}, "v_slider"),
+        ("press", {"crank.length": 0.3, "coupler.length": over("d", 0.22, 0.09)}, "Bx"),
+    ],
+)
+def test_samples_count_where_some_design_that_shares_them_is_ok(machine, numbers, quantity):
+    """Friction jams the slider; the press moves over part of a turn, of which each design has its own."""
+    scene = replaced(replace(ls.example(machine), loads=[]), numbers)
+    cycle, samples = ls.sweep(scene, 360, of=[quantity]), ls.peaks(scene, of=[quantity], theta2=360)
+    assert (cycle.status != 0).any()
+    for end in ("max", "min"):
+        expected = _highest(cycle, f"{quantity}_{end}")
+        np.testing.assert_array_equal(samples[f"{quantity}_{end}"], -expected if end == "min" else expected)
+
+
+def _highest(cycle: xr.Dataset, name: str) -> xr.DataArray:
+    """Return the largest of the samples that a peak is of, of their magnitudes or of their opposites."""
+    quantity, _, end = name.rpartition("_")
+    values = {"peak": abs(cycle[quantity]), "max": cycle[quantity], "min": -cycle[quantity]}[end]
+    return values.max("theta2")
 
 
 def test_means_against_work_and_against_the_sweep():

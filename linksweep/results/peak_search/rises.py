@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from linksweep.engine.quantity import unless_jammed
-from linksweep.results.compute import known_names
+from linksweep.results.compute import jams_unknown, known_names
 from linksweep.results.peak_search.along_paths import highest, rises
 from linksweep.results.peak_search.arcs import arc_ends, arcs_within
 from linksweep.results.peak_search.between import EVERYWHERE, PARTLY
@@ -79,7 +79,7 @@ def sector_peaks(scene: Scene, signals: tuple[str, ...], sectors: int) -> tuple[
 
 def _known(scene: Scene, signals: tuple[str, ...]) -> tuple[str, ...]:
     """Return the names of the signals' values that exist: none where friction jams a machine."""
-    known = known_names(scene.at_one_angle, signals, unless_jammed) if scene.mechanism.rubs else {}
+    known = known_names(scene.at_one_angle, signals, unless_jammed) if jams_unknown(scene) else {}
     return tuple(known.get(signal, signal) for signal in signals)
 
 
