@@ -20,7 +20,7 @@ from typing import Any
 
 from linksweep.base.cache import forget, keep, recall
 from linksweep.engine.kernel import vectors
-from linksweep.engine.kernel.machine_code import INTEGER, MachineCode
+from linksweep.engine.kernel.machine_code import INTEGER, MachineCode, without_collecting
 
 SETTINGS: dict[str, Any] = {"error_model": "numpy", "nogil": True, "_nrt": False}
 """IEEE division, no GIL, and no fast-math at all: contracted or reordered sums would change bits. Kernels allocate no
@@ -34,6 +34,7 @@ TYPES = {INTEGER: "i8", PLACES: "CPointer(i8)", FLOATS: "CPointer(f8)"}
 
 
 @cache
+@without_collecting()
 def compiled(kernel_source: str, streamed: str = "", kinds: tuple[str, ...] = KINDS) -> MachineCode:
     """Return the kernel of this source as machine code: of this process, from the user's cache, or compiled now.
 

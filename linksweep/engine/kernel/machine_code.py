@@ -10,12 +10,14 @@ number of axes, the address alone.
 from __future__ import annotations
 
 import ctypes
+import gc
 import hashlib
 import inspect
 import os
 import struct
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from functools import cache, cached_property
 from itertools import count
 from typing import Any, NamedTuple
@@ -104,6 +106,20 @@ def address(array: np.ndarray) -> int:
     return _integer_at(id(array) + HEADER).value
 
 
+@contextmanager
+def without_collecting() -> Iterator[None]:
+    """Let Python collect no garbage while something compiles: that makes many objects at once, and to look through all
+    that numba and xarray hold took a quarter of the time of a first call."""
+    collects = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if collects:
+            gc.enable()
+
+
+@without_collecting()
 def machine_code(emit: Callable[..., Any], kinds: tuple[str, ...], text: str) -> MachineCode:
     """Return the function whose body `emit` writes: kept machine code, or compiled now. `text` differs wherever the
     body does."""
