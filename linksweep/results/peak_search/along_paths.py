@@ -149,8 +149,8 @@ def highest(group: Any, signals: tuple[str, ...], paths: Paths, current: Array, 
 
 def _search(group: Group, signals: tuple[str, ...], paths: Paths, current: Array, threads: int | None) -> Best:
     """Return the highest of each signal on each path, without the limits at its ends."""
-    count_of_paths, per_path = paths.x.shape
-    samples = np.full(count_of_paths, per_path)
+    count_of_paths = len(paths.x)
+    samples = 1 + (np.diff(paths.x, axis=1) > 0.0).sum(axis=1)  # others repeat a place
     lanes, count, best = _opened(group, signals, paths, threads)
 
     def values_at(tag: Array, x: Array) -> Array:

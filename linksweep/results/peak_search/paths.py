@@ -98,7 +98,10 @@ def turns(group: Any) -> Paths:
     sides, jumps = both_sides(np.concatenate([at_jumps, kinks(group)], axis=1)), both_sides(at_jumps)
     close = approach_samples(group)[:, ::7]
     # a piece between cuts has 15 nodes of its own: it needs fewer cuts than a search needs samples
-    samples, edges = (even, graded, sides, quick), (even[:, ::30], graded[:, ::2], jumps, close, thinned(quick))
+    samples, edges = (
+        (even, graded, sides, quick),
+        (even[:, ::30], _graded_over_period(group, 2), jumps, close, thinned(quick)),
+    )
     x, cuts = (in_order(in_period(np.concatenate(parts, axis=1), period)) for parts in (samples, edges))
     before, after = neighbours(x, period)
     cuts = np.concatenate([cuts, cuts[:, :1] + period], axis=1)
@@ -139,15 +142,16 @@ def _merged(x: Array) -> Array:
     """
     gap = np.diff(x, axis=1, prepend=x[:, :1], append=x[:, -1:])
     with np.errstate(invalid="ignore"):
-        close = gap[:, 1:-1] < MERGED * np.maximum(gap[:, :-2], gap[:, 2:])
+        close = gap[:, 1:-1] < MERGED * np.fmax(gap[:, :-2], gap[:, 2:])
     first = np.where(np.pad(close, ((0, 0), (1, 0))), 0, np.arange(x.shape[1]))
     return np.take_along_axis(x, np.maximum.accumulate(first, axis=1), axis=1)
 
 
-def _graded_over_period(group: Group) -> Array:
-    """Return the samples (design, sample) about the near-toggles of the whole period [degree], in order."""
-    one = in_order(in_period(near_toggle_samples(group), group.scene.period_of_motion))
-    return np.concatenate([one + start for start in _starts_of_motion(group)], axis=1)
+def _graded_over_period(group: Group, step: int = 1) -> Array:
+    """Return the samples (design, sample) about the near-toggles of the whole period [degree], in order: all, or one of
+    each `step` in a period of the motion."""
+    one = np.sort(in_period(near_toggle_samples(group), group.scene.period_of_motion), axis=1)
+    return np.concatenate([in_order(one[:, ::step]) + start for start in _starts_of_motion(group)], axis=1)
 
 
 def _starts_of_motion(group: Group) -> Array:

@@ -141,10 +141,20 @@ def test_refusals(scene, words, message):
 
 def test_peaks_of_a_part_have_the_same_bits_among_designs_with_more_jams():
     """Friction wedges the rougher designs at angles which the others do not have."""
-    scene = replaced(
-        ls.example("crank-shaper"), {"guides.slide.friction": xr.DataArray(np.geomspace(1e-3, 1.0, 20), dims="d")}
+    rough = {"guides.slide.friction": xr.DataArray(np.geomspace(1e-3, 1.0, 20), dims="d")}
+    compare_alone(
+        replaced(ls.example("crank-shaper"), rough), (3, 10, 19), ["F43", "F43_samples"], between=(313.6, 517.2)
     )
-    every = ls.peaks(scene, ["F43"], between=(313.6, 517.2))
-    for design in (3, 10, 19):
-        alone = ls.peaks(ls.scene_at(scene, d=design), ["F43"], between=(313.6, 517.2))
-        np.testing.assert_array_equal(every.F43_peak[design], alone.F43_peak)
+
+
+def test_means_have_the_same_bits_among_designs_with_more_near_toggles():
+    crank = {"crank.length": xr.DataArray(0.12 * np.linspace(0.5, 1.3, 12), dims="d")}
+    compare_alone(replaced(ls.example("whitworth"), crank), (0, 5, 9), ["F12_mean", "T12_rms"])
+
+
+def compare_alone(scene, designs, of, **part):
+    every = ls.peaks(scene, of, **part)
+    for design in designs:
+        alone = ls.peaks(ls.scene_at(scene, d=design), of, **part)
+        for name in alone.data_vars:
+            np.testing.assert_array_equal(every[name].isel(d=design, missing_dims="ignore"), alone[name], err_msg=name)
