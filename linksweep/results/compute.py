@@ -173,13 +173,20 @@ def known_names(scene: Scene, names: tuple[str, ...], known: Callable[[str], str
     """Return the names under which the table has the known values alone of these quantities, by their own names.
 
     `known` is `where_ok` or `unless_jammed`. A quantity that lacks dims of the status keeps its own name: designs that
-    share it may differ in status. All do of a machine whose numbers show that it is always ok.
+    share it may differ in status. So does one that has no value itself where the status is not ok.
     """
-    if surely_ok(scene):
-        return {name: name for name in names}
     plans = {name: plan(scene.table, (name, known(name)), scene.inputs.forms) for name in names}
     same = {name: len({node.dims for node in request.outputs.values()}) == 1 for name, request in plans.items()}
-    return {name: known(name) if same[name] else name for name in names}
+    return {name: known(name) if same[name] and not shows_status(scene, name) else name for name in names}
+
+
+def shows_status(scene: Scene, name: str) -> bool:
+    """Return whether a quantity has a value only where the status is ok: always, or because it depends on all that the
+    status does, of a machine whose closed forms have no value beyond."""
+    if surely_ok(scene):
+        return True
+    status, own = (plan(scene.table, (each,), scene.inputs.forms).inputs for each in ("status", name))
+    return scene.table.limits is None and set(status) <= set(own)
 
 
 def jams_unknown(scene: Scene) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from itertools import chain
 from typing import NamedTuple
 
@@ -25,6 +25,7 @@ from linksweep.results.compute import (
     only_where,
     planned,
     quantity_problems,
+    shows_status,
     surely_ok,
 )
 from linksweep.results.dataset import design_coordinates, flags, plain, provenance, variable
@@ -32,7 +33,6 @@ from linksweep.results.direct_dataset import dataset_of
 from linksweep.results.peak_search.along_paths import SignalPeak
 from linksweep.results.peak_search.between import EVERYWHERE, NEVER
 from linksweep.results.peak_search.exact import exact_peaks, peaks_where, peaks_within
-from linksweep.results.peak_search.groups import empty
 from linksweep.results.peak_search.limits import assembly_of
 from linksweep.results.peak_search.paths import Part
 from linksweep.results.peak_search.poles import with_dead_centres
@@ -178,7 +178,7 @@ def _exact(scene: Scene, items: list[Request], threads: int | None, part: Part |
         peaks = exact_peaks(scene, searched, assembly, threads)
     else:
         peaks = peaks_within(scene, searched, part, threads)
-    largest = _of_designs_that_share(scene, {signal: peaks[known_signals[signal]] for signal in signals})
+    largest = _of_designs_that_share(sampled, {signal: peaks[known_signals[signal]] for signal in signals})
     averages = _means(scene, powers, own, part, threads)
     if part is None:
         known, by_samples = with_dead_centres(scene, assembly), scene.table.limits is not None
@@ -204,7 +204,7 @@ def _of_samples(scene: Scene, angles: ArrayLike, items: list[Request], threads: 
     sampled = scene.at(grid)
     signals, powers = needed(items)
     of_ok = known_names(sampled, tuple(name for name, _ in powers), where_ok)
-    known_signals = {signal: signal if surely_ok(sampled) else where_ok(signal) for signal in signals}
+    known_signals = {signal: signal if shows_status(sampled, signal) else where_ok(signal) for signal in signals}
     largest = {signal: Reduction("largest_sample", known_signals[signal]) for signal in signals}
     pace = changing_pace(sampled)
     averages = {} if pace else {p: Reduction(("mean", "mean_square")[p[1] - 1], of_ok[p[0]]) for p in powers}
@@ -229,11 +229,11 @@ def _of_samples(scene: Scene, angles: ArrayLike, items: list[Request], threads: 
 def _of_designs_that_share(scene: Scene, peaks: dict[str, SignalPeak]) -> dict[str, SignalPeak]:
     """Return peaks over the dims of their signals alone: of all designs that share a signal, but differ in where its
     values are known, the highest."""
-    own = empty(scene, tuple(peaks)) if peaks else {}
+    own = plan(scene.table, tuple(peaks), scene.inputs.forms).outputs
     return {signal: _highest_over(peak, own[signal].dims) for signal, peak in peaks.items()}
 
 
-def _highest_over(peak: SignalPeak, dims: tuple[str, ...]) -> SignalPeak:
+def _highest_over(peak: SignalPeak, dims: Collection[str]) -> SignalPeak:
     """Return a peak over these of its dims, the highest along the others; its bound reaches as high as any."""
     kept = tuple(dim for dim in peak.value.dims if dim in dims)
     if kept == peak.value.dims:
