@@ -266,17 +266,17 @@ def _limits(
 
 
 def limits_at_toggles(
-    values_at: Callable[[Array, Array, Array], Array], steps: Array, asked: Array
+    values_at: Callable[[Array, Array, Array], Array], steps: Array, needs: Array
 ) -> tuple[Array, Array, Array]:
-    """Return the limits of signals at one end of arcs where they are `asked` for (signal, arc), −inf elsewhere, their
+    """Return the limits of signals at one end of arcs where they are needed (signal, arc), −inf elsewhere, their
     errors, and counts of samples: the limits of polynomials through samples before the end, with their last terms.
 
     `values_at` returns values (signal, arc, place) of signals and arcs, by their numbers, at distances x (arc, place).
     """
-    limit, error, samples = np.where(asked, 0.0, -np.inf), np.where(asked, np.inf, 0.0), np.zeros(asked.shape)
+    limit, error, samples = np.where(needs, 0.0, -np.inf), np.where(needs, np.inf, 0.0), np.zeros(needs.shape)
     for span in SPANS:
         with np.errstate(invalid="ignore"):
-            unsure = asked & ~(error <= ALLOWED * np.abs(limit))
+            unsure = needs & ~(error <= ALLOWED * np.abs(limit))
         rows, which = np.flatnonzero(unsure.any(axis=0)), np.flatnonzero(unsure.any(axis=1))
         if not len(rows):
             break

@@ -157,18 +157,18 @@ def _highest(group: Group, arcs: Arcs, signals: tuple[str, ...], threads: int | 
     return best, known
 
 
-def _on_pieces(group: Group, arcs: Arcs, signals: tuple[str, ...], asked: Array, threads: int | None) -> Best:
-    """Return the highest values of signals on pieces of arcs where they are `asked` for (signal, arc); else −inf."""
-    best = Best(np.full(asked.shape, -np.inf), *np.zeros((3, *asked.shape)))
-    rows, which = np.flatnonzero(asked.any(axis=0)), np.flatnonzero(asked.any(axis=1))
+def _on_pieces(group: Group, arcs: Arcs, signals: tuple[str, ...], needs: Array, threads: int | None) -> Best:
+    """Return the highest values of signals on pieces of arcs where they are needed (signal, arc); else −inf."""
+    best = Best(np.full(needs.shape, -np.inf), *np.zeros((3, *needs.shape)))
+    rows, which = np.flatnonzero(needs.any(axis=0)), np.flatnonzero(needs.any(axis=1))
     if len(rows):
         part, names = group.some(rows), tuple(signals[k] for k in which)
         pieces = cut_at_kinks(part, _pieces(part, some_of(arcs, rows)), HALF, threads)
         own = np.ix_(which, rows)
-        levels = np.where(asked[own], -np.inf, np.inf)
+        levels = np.where(needs[own], -np.inf, np.inf)
         highest = highest_on_pieces(part, pieces, names, HALF, threads, levels)
         for table, *of_signals in zip(best, *highest.values(), strict=True):
-            table[own] = np.where(asked[own], of_signals, table[own])
+            table[own] = np.where(needs[own], of_signals, table[own])
     return best
 
 
@@ -196,7 +196,7 @@ def _inside(away: Array, least: Array | float, length: Array) -> Array:
 
 
 def _limits(
-    group: Group, arcs: Arcs, end: int, signals: tuple[str, ...], asked: Array, threads: int | None
+    group: Group, arcs: Arcs, end: int, signals: tuple[str, ...], needs: Array, threads: int | None
 ) -> tuple[Array, Array, Array]:
     """Return `limits_at_toggles` at one end of each arc."""
 
@@ -204,8 +204,8 @@ def _limits(
         angles = some_of(arcs, rows).beside(np.array([end]), x)
         return values_at(group.some(rows), tuple(signals[k] for k in which), angles, threads)
 
-    steps = _steps(group, arcs)[:, end] if asked.any() else np.zeros(len(arcs.row))
-    return limits_at_toggles(at_distances, steps, asked)
+    steps = _steps(group, arcs)[:, end] if needs.any() else np.zeros(len(arcs.row))
+    return limits_at_toggles(at_distances, steps, needs)
 
 
 def _steps(group: Group, arcs: Arcs) -> Array:
