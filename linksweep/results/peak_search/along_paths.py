@@ -84,7 +84,8 @@ def put(peak: SignalPeak, group: Any, numbers: tuple[Array, ...]) -> None:
 
 def raise_to(peak: SignalPeak, group: Any, numbers: tuple[Array, ...]) -> None:
     """Replace a signal's peaks of a group's designs, some of which may share one, by the highest of these numbers."""
-    _raise(peak, _flat_index(peak.value, group.places, len(group.designs)), *numbers)
+    if len(group.designs):
+        _raise(peak, _flat_index(peak.value, group.places, len(group.designs)), *numbers)
 
 
 def follow(group: Any, peaks: dict[str, SignalPeak], all_paths: tuple[PathsOf, ...], threads: int | None) -> None:

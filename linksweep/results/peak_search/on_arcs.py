@@ -93,10 +93,14 @@ def follow_arcs(scene: Scene, designs: Array, peaks: dict[str, SignalPeak], thre
     left = [np.setdiff1d(designs, sound, assume_unique=True)]
     at_once = AT_ONCE if scene.steady else LOADED_AT_ONCE
     for group in groups(scene, signals, sound, at_once, at_once):
-        arcs = _arcs(group)
+        every = _arcs(group)
+        arcs = some_of(every, every.length > 0.0)
+        if not len(arcs.row):
+            left.append(group.designs)
+            continue
         best, sure = _highest(group.some(arcs.row), arcs, signals, threads)
         known = np.bincount(arcs.row, minlength=len(group.designs)) > 0
-        known[arcs.row[~sure]] = False
+        known[arcs.row[~sure]] = known[every.row[every.length <= 0.0]] = False  # some close at one angle alone
         rows = np.flatnonzero(known)
         part, numbers = group.some(rows), _highest_of_designs(arcs.row, best, len(known))
         frame = part.number(scene.mechanism.near_toggle_angle)
