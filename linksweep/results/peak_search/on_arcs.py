@@ -40,6 +40,9 @@ GROWTH, LARGE = 5.0, 0.1
 """Growth from the one to the other of an unbounded signal, and its size there, relative to its peak elsewhere."""
 SURELY = 1e3
 """Size there, relative to that in the middle of the arc, from which on it has no peak elsewhere."""
+LONGEST = 120.0
+"""Length of an arc [degree] above which it is cut in its middle: most samples of a piece lie near its toggles, and
+those in the middle of a long one would be too far apart."""
 BESIDE_TOGGLE = 1e-4
 """Part of an arc that is a piece of its own beside each toggle."""
 ROUNDING, SHORTEST = 1e-12, 1e-6
@@ -186,8 +189,9 @@ def _pieces(group: Group, arcs: Arcs) -> Pieces:
         _inside(np.mod(angles - arcs.start[:, None], period), least, length)
         for angles, least in [*((angles, nearest) for angles in (*breaks, narrow)), (BORDERS[None], BEYOND)]
     ]
-    beside = np.stack([nearest, BESIDE_TOGGLE * length, (1.0 - BESIDE_TOGGLE) * length], axis=1)
-    cuts = arcs.start[:, None] + np.concatenate([*away, beside], axis=1)
+    shares = np.array([BESIDE_TOGGLE, 0.5, 1.0 - BESIDE_TOGGLE]) * length[:, None]
+    shares[length <= LONGEST, 1] = np.nan
+    cuts = arcs.start[:, None] + np.concatenate([*away, nearest[:, None], shares], axis=1)
     pieces = between(distinct(cuts), arcs.end - nearest, len(length))
     return pieces._replace(arc=np.stack([arcs.start, arcs.end]))
 

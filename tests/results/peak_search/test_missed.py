@@ -36,6 +36,9 @@ def test_a_peak_at_once_after_the_start_of_a_piece_is_found():
         ("Watt six-bar", 220_000, 9453),  # a near-toggle just beyond the end of a half turn
         ("Watt six-bar", 400_000, 1148),  # two near-toggles, 7° apart, of which the samples show one
         ("Watt six-bar", 440_000, 4866),  # two near-toggles between two samples
+        ("six-bar of any lengths", 270_000, 7654),  # in the middle of a long arc, whose samples stood at its ends
+        ("six-bar of any lengths", 790_000, 6139),
+        ("six-bar of any lengths", 870_000, 7015),
         ("knuckle-joint press with friction", 150_000, 696),  # a ram that moves by nanometres: rounding hides where
         ("knuckle-joint press with friction", 610_000, 7910),  # it slides, but near the near-toggle
     ],
