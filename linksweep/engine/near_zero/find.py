@@ -20,8 +20,8 @@ def dips_and_zeros(
     plan: Plan, inputs: Fields, dim: str, kinds: np.ndarray, ends: np.ndarray, threads: int | None
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the narrow dips and the zeros of signals of these kinds, and where there may be more of them, as rows of
-    `samples` (row, design, nth), NaN for none; and whether each design is left: one of which a signal is negative
-    that stays positive, or noise may take it beyond zero, or that has too many dips or zeros.
+    `samples` (row, design, nth), NaN for none; and whether each design is left: one of which noise may take a
+    dip beyond zero, or that has too many dips or zeros.
 
     Designs lie along `dim`; `ends` are those of the pieces of their turns. The plan has three signals for each kind.
     """

@@ -196,8 +196,12 @@ def _search(scene: Scene, limits: tuple[Limit, ...], every: Array, rows: Array) 
             pieces.append(_pieces(curves, own, crossed, part) if limit.zeros == "toggle" else own)
             zeros += [touched] if limit.zeros == "toggle" else [touched, crossed._replace(row=own.row[crossed.row])]
         arcs, near = joined(pieces), joined(known)
-    met = joined(zeros)
-    return arcs._replace(row=rows[arcs.row]), near._replace(row=rows[near.row]), met._replace(row=rows[met.row])
+    inside = joined(zeros)
+    return (
+        arcs._replace(row=rows[arcs.row]),
+        near._replace(row=rows[near.row]),
+        inside._replace(row=rows[inside.row]),
+    )
 
 
 def _zeros(curves: Curves, arcs: Arcs, part: int) -> tuple[Zeros, Zeros, NearToggles]:
