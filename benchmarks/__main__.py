@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 from collections.abc import Callable, Sequence
 from contextlib import nullcontext
@@ -14,7 +13,8 @@ from typing import NamedTuple
 from benchmarks import plots
 from benchmarks.accuracy import grids, missed, solves
 from benchmarks.cases import FULL, QUICK, Size
-from benchmarks.report import Groups, as_json, machine, markdown
+from benchmarks.machine import machine, short_name
+from benchmarks.report import Run, Runs, as_json, keep, page, section
 from benchmarks.speed import (
     derivatives,
     exact,
@@ -66,22 +66,28 @@ GROUPS = {
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the benchmarks and print their table; return 1 where rivals disagree on a result, never for a time."""
-    options = _parser().parse_args(arguments)
+    options = _options(arguments)
     size = QUICK if options.quick else FULL
-    groups = {}
+    titles = {name: group.title.format_map(vars(size)) for name, group in GROUPS.items()}
+    facts, runs = machine(), {}
     for name in options.only or GROUPS:
-        title = GROUPS[name].title.format_map(vars(size))
         rows = measured(name, size)
-        groups[title] = [replace(row, goal=None) for row in rows] if options.quick else rows
-        print(markdown({title: groups[title]}), end="\n\n", flush=True)
+        runs[name] = Run(facts, [replace(row, goal=None) for row in rows] if options.quick else rows)
+        print(section(titles[name], {short_name(facts): runs[name].rows}), end="\n\n", flush=True)
         if options.write:
-            plots.draw(name, groups[title], RESULTS.parent)
+            _write(name, runs[name], titles)
     print(_footer(size))
     if options.json:
-        options.json.write_text(json.dumps(as_json(groups), indent=1) + "\n")
-    if options.write:
-        RESULTS.write_text(_results(groups, size))
-    return int(_disagree(groups))
+        options.json.write_text(as_json(runs), encoding="utf-8")
+    return int(_disagree(runs))
+
+
+def _write(name: str, run: Run, titles: dict[str, str]) -> None:
+    """Keep a group, and write the page and its figure anew: what is measured stays if a later group fails."""
+    folder = RESULTS.parent / "results"
+    keep(folder, name, run)
+    RESULTS.write_text(page(folder, titles), encoding="utf-8")
+    plots.draw(name, run.rows, RESULTS.parent)
 
 
 def measured(name: str, size: Size) -> list[Row]:
@@ -90,31 +96,30 @@ def measured(name: str, size: Size) -> list[Row]:
         return group.rows(size)
 
 
-def _disagree(groups: Groups) -> bool:
-    return any(not row.agrees for rows in groups.values() for row in rows)
-
-
-def _results(groups: Groups, size: Size) -> str:
-    title = "# Results\n\nWritten by `python -m benchmarks --write`; [README](README.md) says what each row means."
-    facts = "\n".join(f"- {name}: {value}" for name, value in machine().items())
-    return f"{title}\n\n{facts}\n\n{markdown(groups)}\n\n{_footer(size)}\n"
+def _disagree(runs: Runs) -> bool:
+    return any(not row.agrees for run in runs.values() for row in run.rows)
 
 
 def _footer(size: Size) -> str:
     if size is QUICK:
         return "Tiny sizes, timed once: the errors count, the times mean nothing."
     if can_pin():
-        return "The rows on one core were pinned to it. To choose the core: `taskset -c 1 python -m benchmarks`."
+        return "The rows on one core were pinned to the last core that this process may use."
     return "The rows on one core could not be pinned to it here."
 
 
-def _parser() -> argparse.ArgumentParser:
+def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description="linksweep's speed, as ratios.")
     parser.add_argument("--quick", action="store_true", help="tiny sizes, once: to see that all works, not how fast")
     parser.add_argument("--only", action="append", choices=GROUPS, help="this group; may be given more than once")
     parser.add_argument("--json", type=Path, metavar="FILE", help="also write the rows and the machine to FILE")
-    parser.add_argument("--write", action="store_true", help="also write the table to benchmarks/RESULTS.md, and draw")
-    return parser
+    parser.add_argument(
+        "--write", action="store_true", help="also write these groups to benchmarks/RESULTS.md, and draw"
+    )
+    options = parser.parse_args(arguments)
+    if options.quick and options.write:
+        parser.error("the times of --quick mean nothing: they are not for --write")
+    return options
 
 
 if __name__ == "__main__":

@@ -8,7 +8,7 @@ from typing import Any
 
 from benchmarks.accuracy.grids import MEDIAN, MOST, POPULATIONS
 from benchmarks.accuracy.solves import LINKSWEEP, NEAR, OURS, RATES
-from benchmarks.report import machine
+from benchmarks.machine import machine
 from benchmarks.speed.exact import EXACT
 from benchmarks.timing import Row
 

@@ -1,6 +1,5 @@
 """Every benchmark runs once at a tiny size: its rows exist and its rivals agree. No time is asserted."""
 
-import json
 import math
 from dataclasses import replace
 
@@ -11,7 +10,8 @@ from long import long_but
 import linksweep as ls
 from benchmarks import __main__ as front_door
 from benchmarks.cases import ALL, GENERAL, LENGTHS, QUICK, batch
-from benchmarks.report import HEADER, machine, markdown
+from benchmarks.machine import machine, short_name
+from benchmarks.report import Run, from_json, keep, page, section
 from benchmarks.rivals import limit, peers
 from benchmarks.speed import hard_peaks
 from benchmarks.timing import FASTER, SHARE, WALL, Race, Row, cores, race
@@ -150,24 +150,66 @@ def test_a_missing_rival_states_the_reason():
     assert (row.figure, row.met, row.note) == (None, None, "not measured: no C compiler found")
 
 
-def test_the_table_is_markdown():
+def cells(line: str) -> list[str]:
+    return [cell.strip() for cell in line.strip("|").split("|")]
+
+
+def test_the_table_is_markdown_without_the_columns_that_are_empty():
     rows = [Race({"ours": [2e-3], "theirs": [8e-3]}, 1000).row(FASTER, "ours", "theirs", 3, error=2e-15)]
-    title, _, header, rule, line = markdown({"a group": rows}).splitlines()
-    cells = [cell.strip() for cell in line.strip("|").split("|")]
-    assert (title, header.count("|"), set(rule)) == ("## a group", len(HEADER) + 1, {"|", "-"})
-    assert cells == ["ours", "theirs", "4 times as fast", "≥ 3", "yes", "2 µs", "8 µs", "2e-15", ""]
+    title, _, header, rule, line = section("a group", {"Intel Xeon": rows}).splitlines()
+    assert (title, set(rule)) == ("## a group", {"|", "-"})
+    assert cells(header) == ["ours", "against", "figure", "goal", "Intel Xeon", "takes", "met", "error"]
+    assert cells(line) == ["ours", "theirs", FASTER, "≥ 3", "4", "2 µs", "yes", "2e-15"]
+
+
+def test_rows_of_two_processors_stand_side_by_side(tmp_path):
+    """A job that only one of them measured has no figure of the other; the same job with two notes is two rows."""
+    small, large = (Row("ours", "C", SHARE, 0.5, 1e-3, goal=0.6, note=note) for note in ("small", "large"))
+    runs = {
+        "AMD EPYC 9B14 96-Core Processor": [small, large],
+        "Intel(R) Xeon(R) Processor @ 2.60GHz": [replace(small, ratio=0.7), replace(large, ratio=0.4)],
+    }
+    for processor, rows in runs.items():
+        keep(tmp_path, "peaks", Run({"processor": processor, "cores": "2"}, [Row("old", "C", SHARE, 9.0)]))
+        keep(tmp_path, "peaks", Run({"processor": processor, "cores": "2"}, rows))
+    keep(tmp_path, "exact", Run({"processor": "Intel(R) Xeon(R) Processor @ 2.60GHz", "cores": "4"}, [small]))
+    assert {file.name for file in tmp_path.iterdir()} == {"amd-epyc-9b14.json", "intel-xeon.json"}
+    lines = page(tmp_path, {"peaks": "Peaks", "exact": "Exact peaks", "warm": "Warm calls"}).splitlines()
+    tables = [cells(line) for line in lines if line.startswith("| ")]
+    assert tables == [
+        ["", "AMD EPYC 9B14", "Intel Xeon"],
+        ["processor", *runs],
+        ["cores", "2", "2; 4 for exact"],
+        ["ours", "against", "figure", "goal", "AMD EPYC 9B14", "takes", "met", "Intel Xeon", "takes", "met", "note"],
+        ["ours", "C", SHARE, "≤ 0.6", "0.5", "1 ms", "yes", "0.7", "1 ms", "no", "small"],
+        ["ours", "C", SHARE, "≤ 0.6", "0.5", "1 ms", "yes", "0.4", "1 ms", "yes", "large"],
+        ["ours", "against", "figure", "goal", "Intel Xeon", "takes", "met", "note"],
+        ["ours", "C", SHARE, "≤ 0.6", "0.5", "1 ms", "yes", "small"],
+    ]
 
 
 def test_the_command_writes_its_table(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(front_door, "RESULTS", tmp_path / "RESULTS.md")
+    monkeypatch.setattr(front_door, "QUICK", replace(QUICK))  # another size than that whose times mean nothing
+    monkeypatch.setattr(front_door, "FULL", QUICK)
     file = tmp_path / "rows.json"
-    assert front_door.main(["--quick", "--only", "threads", "--json", str(file), "--write"]) == 0
-    printed, written, stored = capsys.readouterr().out, front_door.RESULTS.read_text(), json.loads(file.read_text())
+    assert front_door.main(["--only", "threads", "--json", str(file), "--write"]) == 0
+    printed, written = capsys.readouterr().out, front_door.RESULTS.read_text()
+    (kept,) = (tmp_path / "results").iterdir()
+    assert kept.read_text() == file.read_text()
+    stored = from_json(file.read_text())["threads"]
     assert "## Two threads against one" in printed
     assert "## Two threads against one" in written
-    assert stored["machine"] == machine()
-    assert all(f"- {name}: {value}" in written for name, value in machine().items())
-    assert [row["group"] for row in stored["rows"]] == ["Two threads against one"] * 5
+    assert short_name(stored.machine) in written
+    assert stored.machine == machine()
+    assert all(value in written for value in machine().values())
+    assert len(stored.rows) == 5
+
+
+def test_times_that_mean_nothing_are_not_written(capsys):
+    with pytest.raises(SystemExit):
+        front_door.main(["--quick", "--write"])
+    assert "mean nothing" in capsys.readouterr().err
 
 
 def test_disagreement_is_an_error_a_slow_run_is_not(tmp_path, monkeypatch):

@@ -15,7 +15,7 @@ from benchmarks.accuracy import grids, solves, truth
 from benchmarks.cases import GENERAL, QUICK
 from benchmarks.rivals import numba_dense, peers
 from benchmarks.speed import exact, growth
-from benchmarks.timing import Row
+from benchmarks.timing import FASTER, Row
 
 EPS = 2.0**-52
 
@@ -143,11 +143,11 @@ def test_figures_are_written_where_results_exist(tmp_path, monkeypatch):
     note, figures = next(iter(grids.POPULATIONS)), {grids.MEDIAN: 1e-4, grids.MOST: 1e-3}
     peak = Row("", grids.EXACT, solves.TIMES, 1.0, error=1e-2, note=note, allowed=math.inf, figures=figures)
     peaks = [replace(peak, job=f"ls.peaks, {n} samples", seconds=n * 1e-8) for n in grids.SAMPLES]
-    groups = {"solves": SOLVED, "grids": peaks, "threads": []}
+    groups = {"solves": SOLVED, "grids": peaks, "threads": [Row("ours", "theirs", FASTER)]}
     for name, rows in groups.items():
         monkeypatch.setitem(front_door.GROUPS, name, front_door.Group(name, lambda size, rows=rows: rows))
     monkeypatch.setattr(front_door, "RESULTS", tmp_path / "RESULTS.md")
     assert front_door.main(["--write", *(word for name in groups for word in ("--only", name))]) == 0
-    assert {path.name for path in tmp_path.iterdir()} == {"RESULTS.md", "solves.png", "grids.png"}
+    assert {path.name for path in tmp_path.iterdir()} == {"RESULTS.md", "results", "solves.png", "grids.png"}
     assert matplotlib.image.imread(tmp_path / "grids.png").std() > 0.01
     assert "near a toggle 1e-11" in front_door.RESULTS.read_text()
