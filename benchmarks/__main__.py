@@ -50,7 +50,7 @@ GROUPS = {
     "peaks": Group("Peaks of {designs} designs × {turn} angles, one core", peaks.rows),
     "exact": Group("Exact peaks of many designs, one core", exact.rows),
     "hard_peaks": Group("Exact peaks near toggles, of partial turns, of forces that jump, one core", hard_peaks.rows),
-    "missed": Group("Peaks that the search misses, up to {machines:,} random designs of a kind", missed.rows),
+    "missed": Group("Peaks that the search misses of random designs of each kind", missed.rows),
     "skipping": Group("Quantities that are not requested cost nothing, {angles:,} angles, one core", skipping.rows),
     "mechanisms": Group("Other mechanisms against the four-bar, {angles:,} angles, one core", mechanisms.rows),
     "derivatives": Group("Derivatives to ten parameters, a tenth of {angles:,} angles, one core", derivatives.rows),
