@@ -4,11 +4,14 @@ import numpy as np
 import pytest
 
 from linksweep.base import cache
+from linksweep.engine.interpreter import evaluate as evaluation
 from linksweep.engine.interpreter import machine
 from linksweep.engine.interpreter.evaluate import evaluate
 from linksweep.engine.interpreter.machine import OPERANDS, OPERATORS, TILE
 from linksweep.engine.interpreter.program import programs
 from linksweep.engine.kernel import machine_code
+from linksweep.engine.kernel.instructions import REGISTER
+from linksweep.engine.kernel.machine_code import address
 from linksweep.engine.trace.graph import Graph, Node
 from linksweep.engine.trace.operators import interpret
 from linksweep.engine.trace.plan import Plan
@@ -66,6 +69,22 @@ def test_interpreted_as_by_numpy(samples):
             np.testing.assert_array_equal(np.isnan(ours), np.isnan(theirs))
             number = ~np.isnan(ours)
             np.testing.assert_array_equal(ours[number].view(np.int64), theirs[number].view(np.int64))
+
+
+@pytest.mark.parametrize("samples", [0, 3])
+def test_rows_have_room_for_a_vector(samples, monkeypatch):
+    """A vector is read and written whole: also where a search near zero has no sample to evaluate."""
+    draw, room = np.random.default_rng(7), []
+
+    def recorded(array: np.ndarray) -> int:
+        room.append(array.shape[-1])
+        return address(array)
+
+    monkeypatch.setattr(evaluation, "address", recorded)
+    plan, sizes = drawn_plan(draw), {"theta2": samples, "mass": 3, "length": 2}
+    result = evaluate(plan, drawn_values(draw, plan, sizes), sizes)
+    assert min(room) >= REGISTER
+    assert {np.shape(result[node])[-1] for node in plan.outputs.values() if "theta2" in node.dims} == {samples}
 
 
 def test_registers_are_used_again():

@@ -59,8 +59,11 @@ def _rows(value: np.ndarray | np.float64, shape: tuple[int, ...], designs: int) 
         designs, shape = 1, value.shape
     spread = value if value.shape == shape else np.broadcast_to(value, shape)  # which takes long even for nothing
     rows = np.ascontiguousarray(spread, dtype=np.float64).reshape(designs, -1)
-    missing = REGISTER - rows.shape[1]
-    return rows if missing <= 0 else np.concatenate([rows, np.repeat(rows[:, -1:], missing, axis=1)], axis=1)
+    if (samples := rows.shape[1]) >= REGISTER:
+        return rows
+    filled = np.zeros((len(rows), REGISTER))  # nobody reads what comes of the zeros
+    filled[:, :samples] = rows
+    return filled
 
 
 def _place(rows: np.ndarray) -> tuple[int, int]:
