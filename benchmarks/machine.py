@@ -17,7 +17,7 @@ Facts = dict[str, str]
 VECTORS = {16: "AVX-512", 8: "AVX2", 4: "of two numbers"}
 """Names of vectors, by the number of samples that linksweep takes side by side."""
 TRADE = re.compile(r"\((R|TM)\)|\b(Processor|CPU|\d+-Core)\b|@.*", re.IGNORECASE)
-"""Parts of a processor's name that distinguish it from no other."""
+"""Parts of a processor's name to leave out: trade marks, the words that many share, the clock."""
 
 
 def machine() -> Facts:

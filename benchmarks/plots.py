@@ -21,8 +21,11 @@ MACHINE = "{processor}, one core; {system}, Python {Python}, numpy {numpy}, numb
 STYLE = {"font.size": 9.0, "axes.spines.top": False, "axes.spines.right": False, "figure.dpi": 160}
 LEAST = 1e-16
 """Smaller errors are drawn as this."""
-PLACES = [((0.0, -14.0), "center"), ((7.0, -3.0), "left"), ((-7.0, -3.0), "right")]
-PLACES += [((0.0, -14.0 - down), "center") for down in (10.0, 20.0, 30.0, 40.0)]
+PLACES = [
+    place
+    for down in (0.0, -10.0, -20.0, -30.0, -40.0)
+    for place in (((0.0, down - 14.0), "center"), ((7.0, down - 3.0), "left"), ((-7.0, down - 3.0), "right"))
+]
 """Offsets of a name from its point [pt], in order of preference."""
 SMALL = {"textcoords": "offset points", "ha": "center", "fontsize": 7.5}
 LEGEND = {"loc": "lower right", "frameon": False, "fontsize": 8.0}

@@ -18,9 +18,9 @@ from benchmarks.timing import FASTER, SHARE, WALL, Row
 UNITS = {"s": 1.0, "ms": 1e3, "µs": 1e6, "ns": 1e9}
 HEAD = """# Results
 
-Written by `python -m benchmarks --write`; [README](README.md) says what each row means. The column of a processor is
-its figure; *takes* is the time of *ours* there, an angle or a design in most rows. A goal in seconds is one of this
-time. Errors are the largest on any processor."""
+Written by `python -m benchmarks --write`; [README](README.md) says what each row means. The column of a processor has
+its figure, *takes* the time of *ours* there, for an angle or a design in most rows. Goals in seconds are for this time.
+Errors are the largest of all processors."""
 
 
 class Run(NamedTuple):
@@ -94,9 +94,9 @@ def section(title: str, rows: Mapping[str, list[Row]]) -> str:
 
 
 def _matched(rows: Mapping[str, list[Row]]) -> Iterable[Beside]:
-    """Match rows by job and rival, and by note where these repeat."""
+    """Match rows by job and rival, and by note where these repeat; in the order of the processor that has most."""
     matched: dict[tuple[str, ...], dict[str, Row]] = {}
-    for processor, own in rows.items():
+    for processor, own in sorted(rows.items(), key=lambda item: -len(item[1])):
         repeated = Counter((row.job, row.against) for row in own)
         for row in own:
             job = row.job, row.against

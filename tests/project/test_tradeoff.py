@@ -13,6 +13,7 @@ from benchmarks import __main__ as front_door
 from benchmarks import plots
 from benchmarks.accuracy import grids, solves, truth
 from benchmarks.cases import GENERAL, QUICK
+from benchmarks.report import from_json
 from benchmarks.rivals import numba_dense, peers
 from benchmarks.speed import exact, growth
 from benchmarks.timing import FASTER, Row
@@ -131,12 +132,17 @@ SOLVED = [
 ]
 
 
-def test_labels_of_methods_do_not_overlap():
-    figure = plots.FIGURES["solves"]([row for row in SOLVED if row.seconds])
-    names = figure.axes[0].texts
-    assert {name.get_text() for name in names} == {row.job for row in SOLVED[:4]}
-    boxes = [name.get_window_extent() for name in names]
-    assert not any(box.overlaps(other) for k, box in enumerate(boxes) for other in boxes[:k])
+MEASURED = {file.stem: from_json(file.read_text())["solves"].rows for file in (plots.HERE / "results").iterdir()}
+
+
+@pytest.mark.parametrize("rows", [SOLVED, *MEASURED.values()], ids=["drawn up", *MEASURED])
+def test_labels_of_methods_do_not_overlap(rows):
+    rows = [row for row in rows if row.seconds]
+    panels = plots.FIGURES["solves"](rows).axes
+    for ax, against in zip(panels, (solves.OURS, solves.RATES), strict=True):
+        assert {name.get_text() for name in ax.texts} == {row.job for row in rows if row.against == against}
+        boxes = [name.get_window_extent() for name in ax.texts]
+        assert not any(box.overlaps(other) for k, box in enumerate(boxes) for other in boxes[:k])
 
 
 def test_figures_are_written_where_results_exist(tmp_path, monkeypatch):

@@ -56,4 +56,5 @@ def assert_equal(result: xr.Dataset, expected: xr.Dataset) -> None:
     for name in expected.data_vars:
         both = result.variables[name], expected.variables[name]
         sizes = {**both[0].sizes, **both[1].sizes}
+        assert both[0].sizes.items() <= sizes.items(), name
         np.testing.assert_array_equal(*(value.set_dims(sizes) for value in both), err_msg=str(name))
