@@ -24,7 +24,7 @@ from linksweep.chains.dyads.names import (
 )
 from linksweep.chains.dyads.rrr import Rows
 from linksweep.chains.rows.bodies import CRANK, Body, Source, crank_pin_rows, xy
-from linksweep.chains.shape import ORIGIN, Arm, Frame, Shape
+from linksweep.chains.shape import ORIGIN, Arm, Arms, Frame, Shape
 from linksweep.chains.topology import GROUND, RPR, RRP, RRR, Side, Step
 from linksweep.engine.quantity import Quantity, Row
 from linksweep.physics import crank_driven
@@ -40,6 +40,7 @@ class Motion:
         self.rows: Rows = []
         self.bodies: dict[str, Body] = {}
         self.frames: dict[str, Frame] = {}
+        self.arms = Arms(self)
         self.names: dict[str, Names] = {}
         self.certain: dict[str, Source] = {}
         self._work: dict[str, list[str]] = defaultdict(list)
@@ -116,6 +117,7 @@ class Motion:
             self.certain |= dict.fromkeys(low_words, f"{role}_length")
         self.bodies[role] = Body(CRANK.number, role, steady=True, ratio=1.0)
         self.frames[role] = Frame(pivot, ("cos2", "sin2", "cos2_lo", "sin2_lo"), (1.0, 0.0, 0.0, 0.0))
+        self.arms.add(pivot, pin, full(pin))
         self._carry(role, {pivot, pin})
         self._work[role].append("N2")
 
@@ -153,31 +155,32 @@ class Motion:
         """Add rows of all pins of a placed link: their vectors from its first pin, and the places of its other pins."""
         k, frame = self.number(role), self.frames[role]
         first, second, *third = self.topology.links[role]
+        carried = [pin for pin in (first, second, *third) if pin not in placed and self.topology.support[pin] == role]
+        for pin in carried:
+            self._carried(role, pin, frame)
         for pin in third:
-            own, length = self.own(role, pin), f"{role}_length"
-            self.row(planar.to_ground_axes, xy(f"r{k}_{pin}"), *own[:2], length, *xy(f"r{k}"))
-        for pin in (first, second, *third):
-            if pin not in placed and self.topology.support[pin] == role:
-                self._carried(role, pin, frame)
+            if pin not in carried or frame.pin != first:
+                own, length = self.own(role, pin), f"{role}_length"
+                self.row(planar.to_ground_axes, xy(f"r{k}_{pin}"), *own[:2], length, *xy(f"r{k}"))
 
     def _carried(self, role: str, pin: str, frame: Frame) -> None:
         """Add rows of a pin that its link carries."""
         k, start = self.number(role), frame.pin
-        arm, turned, quotient = f"r{k}_{start}_{pin}", f"turned{k}_{pin}", f"quotient{k}_{pin}"
-        self.row(planar.difference, xy(arm), *self.arm(role, pin), *self.arm(role, start))
-        self.row(planar.vector_sum, xy(pin), *self.place(start)[:2], *xy(arm))
+        first, second, *_ = self.topology.links[role]
+        own, quotient = full(f"own{k}_{pin}"), full(f"quotient{k}_{pin}")
+        arm = full(f"r{k}_{pin}" if start == first and pin != second else f"r{k}_{start}_{pin}")
+        self.row(pins.between, own, *self.own(role, pin), *self.own(role, start))
+        self.row(pins.quotient, quotient, *own, *frame.own)
+        self.row(pins.turned_with_low_words, arm, *quotient, *frame.vector)
+        self.arms.add(start, pin, arm)
+        self.row(pins.joined, full(pin), *self.place(start), *arm)
+        if not self.plain:
+            self.certain |= dict.fromkeys(full(pin)[2:], f"{role}_length")
         u, u_slope = self.motion(start, "u"), self.motion(start, "u", "_slope")
         ratio, slope = self.bodies[role].ratio, self.bodies[role].slope
-        self.row(planar.point_velocity, xy(f"u{pin}"), *u, ratio, *xy(arm))
-        self.row(planar.point_acceleration, (f"u{pin}x_slope", f"u{pin}y_slope"), *u_slope, ratio, slope, *xy(arm))
+        self.row(planar.point_velocity, xy(f"u{pin}"), *u, ratio, *arm[:2])
+        self.row(planar.point_acceleration, (f"u{pin}x_slope", f"u{pin}y_slope"), *u_slope, ratio, slope, *arm[:2])
         self.rates(pin)
-        self.row(pins.between, full(f"own{k}_{pin}"), *self.own(role, pin), *self.own(role, start))
-        self.row(pins.quotient, full(quotient), *full(f"own{k}_{pin}"), *frame.own)
-        self.row(pins.turned_with_low_words, full(turned), *full(quotient), *frame.vector)
-        low_words = (f"{pin}x_lo", f"{pin}y_lo")
-        self.row(pins.sum_low_words, low_words, *xy(pin), *self.place(start), *full(turned))
-        if not self.plain:
-            self.certain |= dict.fromkeys(low_words, f"{role}_length")
 
     def rates(self, pin: str) -> None:
         """Add rows of a pin's velocity and acceleration."""
@@ -316,6 +319,10 @@ class Motion:
             of_force("F32", f"push_{coupler.role}_{coupler.pin}"),
             of_force("F14", f"hold_{rocker.role}"),
         )
+        names = self.names[step.name]
+        self.arms.apart(tuple(str(names[own]) for own in full("apart_BD")), coupler.pin, rocker.pin)
+        for side, arm in zip((rocker, coupler), arms[::-1], strict=True):
+            self.arms.add(side.pin, X, full(arm.stem))
         self.measure(step, f"acute angle between {first.role} and {second.role}")
 
     def _swapped(self, step: Step) -> dict[str, Source]:

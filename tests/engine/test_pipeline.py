@@ -45,6 +45,7 @@ def test_values_fit_into_the_registers(name):
     length, start = pipeline._schedule(loop(name))
     every = waiting.gaps(start)
     in_memory = waiting.in_memory(every, length)
-    held = Counter(cycle % length for gap in every if gap not in in_memory for cycle in gap.cycles)
+    numbers = [gap for gap in every if gap.value.operator != "<"]  # conditions have registers of their own
+    held = Counter(cycle % length for gap in numbers if gap not in in_memory for cycle in gap.cycles)
     assert max(held.values()) <= waiting.REGISTERS
     assert 0 < len({gap.value for gap in in_memory}) < len(start) / 4  # few values are stored

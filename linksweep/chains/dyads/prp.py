@@ -56,7 +56,7 @@ def between_guides() -> Rows:
             ("second_gap", "second_size"),
             (*full("PO"), *LINE, "second_offset", "second_offset_lo", *crossing),
         ),
-        Row(dyad_prp.prp_positions, ("x_slider", "x_second")),
+        Row(dyad_prp.prp_positions, ("x_slider", "x_second", "inverse_crossing_sin")),
         Row(moving_guide.on_guide, ("PCx", "PCy"), ("x_second", "second_offset", *SECOND)),
         Row(planar.point_velocity, ("vgx", "vgy"), ("uOx", "uOy", "guide_ratio", "OCx", "OCy")),
         Row(planar.point_velocity, ("vhx", "vhy"), ("uPx", "uPy", "second_guide_ratio", "PCx", "PCy")),
@@ -82,7 +82,10 @@ def between_guides() -> Rows:
         Row(
             pins.newton_step,
             ("Cx_lo", "Cy_lo"),
-            ("first_missing", "second_missing", "minus_guide_sin", "guide_cos", "minus_second_sin", "second_guide_cos"),
+            (
+                *("first_missing", "second_missing", "minus_guide_sin", "guide_cos"),
+                *("minus_second_sin", "second_guide_cos", "inverse_crossing_sin"),
+            ),
         ),
     ]
 

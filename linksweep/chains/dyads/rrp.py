@@ -66,7 +66,7 @@ def between_pin_and_guide() -> Rows:
     slope_inputs = ("uOx_slope", "uOy_slope", "guide_ratio", "guide_slope", "OCx", "OCy", "ratio_slider", *GUIDE)
     relative = ("u_B_guide_x", "u_B_guide_y")
     return [
-        Row(pins.between, full("OB"), (*full("B"), *full("O"))),
+        Row(pins.apart, full("OB"), (*full("B"), *full("O"))),
         Row(
             dyad_rrp.rrp_between,
             ("B_along", "rod_across", "low", "high"),
@@ -140,7 +140,7 @@ def _closed() -> Rows:
         Row(
             pins.newton_step,
             ("Cx_lo", "Cy_lo"),
-            ("B_missing", "guide_missing", "r3x", "r3y", "minus_guide_sin", "guide_cos"),
+            ("B_missing", "guide_missing", "r3x", "r3y", "minus_guide_sin", "guide_cos", "inverse_rod_along"),
         ),
         Row(planar.vector_sum, ("r3x_lo", "r3y_lo"), (*from_B, "Cx_lo", "Cy_lo")),
     ]

@@ -21,8 +21,11 @@ CERTAIN_ON_CRANK: Certain = {
 """Names of the numbers made in double-double on crank and ground, with their errors in those of a cosine."""
 CERTAIN: Certain = {"low": "reach", "high": "reach"}
 """Likewise between any two pins."""
-CERTAIN_BEYOND: Certain = {"Cx_lo": "coupler_length", "Cy_lo": "coupler_length"}
-"""Likewise of the pin on which dyads beyond may close."""
+CERTAIN_BEYOND: Certain = {
+    **dict.fromkeys(("r3x_lo", "r3y_lo", "Cx_lo", "Cy_lo"), "coupler_length"),
+    **dict.fromkeys(("r4x_lo", "r4y_lo"), "rocker_length"),
+}
+"""Likewise of the links, and of the pin, on which dyads beyond may close."""
 CLOSED = (
     *("r3x", "r3y", "r4x", "r4y", "inverse_r4_cross_r3"),
     *("along3", "along4", "across", "inverse_2ff", "half_inverse_root"),
@@ -53,15 +56,17 @@ def on_crank_and_ground(turned: bool, goes_through: bool) -> Rows:
         Row(dyad_rrr.rrr_velocity_ratios, ("ratio3", "ratio4")),
         Row(four_bar.ratio_slopes, ("slope3", "slope4")),
         *_closed(),
+        *_pin("B", 3),
     ]
 
 
 def between_pins() -> Rows:
-    """Return the rows of the closure between any two pins."""
+    """Return the rows of the closure between any two pins, of which `apart_BD` is known."""
     links = ("r3x", "r3y", "r4x", "r4y", "inverse_r4_cross_r3")
+    lengths = ("coupler_length", "coupler_length_lo", "rocker_length", "rocker_length_lo")
     return [
-        Row(pins.between, full("BD"), (*full("D"), *full("B"))),
-        Row(dyad_rrr.rrr_between_pins, ("low", "high")),
+        Row(planar.vector_sum, ("BDx", "BDy"), full("apart_BD")),
+        Row(dyad_rrr.rrr_between_pins, ("low", "high"), (*full("apart_BD"), *lengths)),
         Row(dyad_rrr.rrr_reach, ("reach", "low_noise")),
         Row(planar.identity, ("high_noise",), ("low_noise",)),
         Row(planar.identity, ("side",), ("branch_sign",)),
@@ -79,30 +84,34 @@ def between_pins() -> Rows:
             ("u_BDx_slope", "u_BDy_slope", "ratio3", "ratio4", *links),
         ),
         *_closed(),
+        *_pin("D", 4),
     ]
 
 
 def _closed() -> Rows:
     """Return the rows that follow from the factors low and high."""
-    from_B, from_D = ("BCx_lo", "BCy_lo"), ("DCx_lo", "DCy_lo")
+    from_B, step = full("exact_BC"), ("r4x_lo", "r4y_lo")
     return [
         Row(dyad_rrr.rrr_close, CLOSED),
         Row(dyad_rrr.rrr_status, ("closure",)),
         Row(dyad_rrr.transmission_angle, ("transmission_angle",)),
-        Row(planar.vector_sum, ("Cx", "Cy"), ("Bx", "By", "r3x", "r3y")),
-        Row(pins.link_low_words, from_B, (*full("B"), "r3x", "r3y")),
-        Row(pins.link_to_low_words, from_D, ("r4x", "r4y", "Cx", "Cy", *full("D"))),
-        Row(pins.excess_square, ("B_missing",), ("r3x", "r3y", *from_B, "coupler_length", "coupler_length_lo")),
-        Row(pins.excess_square, ("D_missing",), ("r4x", "r4y", *from_D, "rocker_length", "rocker_length_lo")),
-        Row(pins.newton_step, ("Cx_lo", "Cy_lo"), ("B_missing", "D_missing", "r3x", "r3y", "r4x", "r4y")),
-        Row(planar.vector_sum, ("r3x_lo", "r3y_lo"), (*from_B, "Cx_lo", "Cy_lo")),
-        Row(planar.vector_sum, ("r4x_lo", "r4y_lo"), (*from_D, "Cx_lo", "Cy_lo")),
-        Row(planar.point_velocity, ("uCx", "uCy"), ("uBx", "uBy", "ratio3", "r3x", "r3y")),
-        Row(
-            planar.point_acceleration,
-            ("uCx_slope", "uCy_slope"),
-            ("uBx_slope", "uBy_slope", "ratio3", "slope3", "r3x", "r3y"),
-        ),
+        Row(pins.joined, from_B, ("r4x", "r4y", 0.0, 0.0, *full("apart_BD"))),
+        Row(pins.excess_square, ("B_missing",), (*from_B, "coupler_length", "coupler_length_lo")),
+        Row(pins.excess_square, ("D_missing",), ("r4x", "r4y", 0.0, 0.0, "rocker_length", "rocker_length_lo")),
+        Row(pins.newton_step, step, ("D_missing", "B_missing", "r4x", "r4y", "r3x", "r3y", "inverse_r4_cross_r3")),
+        Row(pins.low_words, ("r3x_lo", "r3y_lo"), ("r3x", "r3y", *from_B, *step)),
+    ]
+
+
+def _pin(known: str, digit: int) -> Rows:
+    """Return the rows of pin C and its motion, from a known pin and the link from there."""
+    r, ratio, slope = full(f"r{digit}"), f"ratio{digit}", f"slope{digit}"
+    u, u_slope = (f"u{known}x", f"u{known}y"), (f"u{known}x_slope", f"u{known}y_slope")
+    return [
+        Row(planar.vector_sum, ("Cx", "Cy"), (f"{known}x", f"{known}y", *r[:2])),
+        Row(pins.joined_low_words, ("Cx_lo", "Cy_lo"), (*full(known), *r)),
+        Row(planar.point_velocity, ("uCx", "uCy"), (*u, ratio, *r[:2])),
+        Row(planar.point_acceleration, ("uCx_slope", "uCy_slope"), (*u_slope, ratio, slope, *r[:2])),
     ]
 
 

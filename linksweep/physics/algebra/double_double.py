@@ -62,9 +62,17 @@ def overlapping_dot(px: Pair, py: Pair, qx: Pair, qy: Pair) -> Pair:
     return high, low + ((x_lo + y_lo) + mixed)
 
 
+def overlapping_square(x: Pair, y: Pair) -> Pair:
+    """Return x² + y² likewise; the low words of x and y may reach into their high ones, too."""
+    (xx, xx_lo), (yy, yy_lo) = two_product(x[0], x[0]), two_product(y[0], y[0])
+    high, low = two_sum(xx, yy)
+    mixed = x[0] * x[1] + y[0] * y[1]
+    return high, low + ((xx_lo + yy_lo) + (mixed + mixed))
+
+
 def square_of(x: Pair, y: Pair) -> Pair:
     """Return x² + y² as a double-double."""
-    return dot(x, y, x, y)
+    return ordered_sum(*overlapping_square(x, y))
 
 
 def cross(px: Pair, py: Pair, qx: Pair, qy: Pair) -> Number:

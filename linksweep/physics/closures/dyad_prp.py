@@ -58,10 +58,10 @@ def prp_gap(
     return gap, abs(OOx) + abs(OOy) + abs(offset) + abs(other_offset)
 
 
-def prp_positions(gap: Number, second_gap: Number, crossing_sin: Number) -> tuple[Number, Number]:
-    """Return x_1 and x_2 of the module's equations, from the gaps of the second and of the first guide."""
+def prp_positions(gap: Number, second_gap: Number, crossing_sin: Number) -> tuple[Number, Number, Number]:
+    """Return x_1 and x_2 of the module's equations, from the gaps of the second and of the first guide; and 1/sin γ."""
     inverse = 1.0 / crossing_sin
-    return -(gap * inverse), second_gap * inverse
+    return -(gap * inverse), second_gap * inverse, inverse
 
 
 def prp_status(low: Number, low_noise: Number) -> Number:

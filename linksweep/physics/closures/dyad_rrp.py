@@ -6,8 +6,7 @@ supplies the factors low = b − h and high = b + h in a form that does not canc
 """
 
 from linksweep.physics.algebra.arithmetic import Number, atan2, degrees, sqrt, where
-from linksweep.physics.algebra.double_double import add
-from linksweep.physics.algebra.double_double import dot as dot_pairs
+from linksweep.physics.algebra.double_double import difference, overlapping_dot, two_sum
 from linksweep.physics.algebra.planar import dot
 from linksweep.physics.closures.crank_angle import CHANGE_POINT_NOISE, range_noise
 
@@ -42,21 +41,15 @@ def rrp_between(
 ) -> tuple[Number, Number, Number, Number]:
     """Return B's component along the guide and the rod's across it, and the factors low and high.
 
-    B and the guide's direction are double-doubles from the origin of the guide's axes, from which the guide lies at the
-    offset.
+    B is a sum of two words, and the guide's direction a double-double, from the origin of the guide's axes, from which
+    the guide lies at the offset.
     """
-    B, guide, rod = (
-        ((Bx, Bx_lo), (By, By_lo)),
-        ((guide_cos, guide_cos_lo), (guide_sin, guide_sin_lo)),
-        (
-            rod_length,
-            rod_length_lo,
-        ),
-    )
-    B_across = dot_pairs(guide[0], guide[1], B[1], (-B[0][0], -B[0][1]))
-    across = add((offset, offset_lo), (-B_across[0], -B_across[1]))
-    low, high = add(rod, (-across[0], -across[1])), add(rod, across)
-    return dot(Bx, By, guide_cos, guide_sin), across[0], low[0], high[0]
+    guide_x, guide_y, rod = (guide_cos, guide_cos_lo), (guide_sin, guide_sin_lo), (rod_length, rod_length_lo)
+    B_across, B_across_lo = overlapping_dot(guide_x, guide_y, (By, By_lo), (-Bx, -Bx_lo))
+    across, across_lo = two_sum(offset, -B_across)
+    across_lo = across_lo + (offset_lo - B_across_lo)
+    low, high = difference(rod, (across, across_lo)), difference(rod, (-across, -across_lo))
+    return dot(Bx, By, guide_cos, guide_sin), across + across_lo, low, high
 
 
 def rrp_noise(rod_length: Number, offset: Number) -> Number:

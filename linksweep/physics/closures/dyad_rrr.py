@@ -10,7 +10,7 @@ formulas lose all digits near a toggle. The rest follows without another subtrac
 """
 
 from linksweep.physics.algebra.arithmetic import Number, atan2, degrees, sqrt, where
-from linksweep.physics.algebra.double_double import add, difference, multiply, overlapping_dot
+from linksweep.physics.algebra.double_double import add, difference, multiply, overlapping_square
 from linksweep.physics.algebra.planar import cross, dot
 from linksweep.physics.closures.crank_angle import CHANGE_POINT_NOISE, range_noise
 from linksweep.physics.crank_driven import moments_or_work
@@ -54,10 +54,9 @@ def rrr_between_pins(
     rocker_length: Number,
     rocker_length_lo: Number,
 ) -> tuple[Number, Number]:
-    """Return low and high of the module's equations, for pins B and D that are double-doubles."""
-    BD = (BDx, BDx_lo), (BDy, BDy_lo)
+    """Return low and high of the module's equations, for B→D as a sum of two words."""
     b, c = (coupler_length, coupler_length_lo), (rocker_length, rocker_length_lo)
-    square, difference_bc, sum_bc = overlapping_dot(*BD, *BD), add(b, (-c[0], -c[1])), add(b, c)
+    square, difference_bc, sum_bc = overlapping_square((BDx, BDx_lo), (BDy, BDy_lo)), add(b, (-c[0], -c[1])), add(b, c)
     low = difference(square, multiply(difference_bc, difference_bc))
     return low, difference(multiply(sum_bc, sum_bc), square)
 

@@ -16,11 +16,10 @@ from linksweep.physics.algebra.double_double import (
     divide,
     dot,
     multiply,
+    ordered_sum,
     overlapping_dot,
     two_product,
-    two_sum,
 )
-from linksweep.physics.algebra.planar import cross
 
 Four = tuple[Number, Number, Number, Number]
 """A vector: x, y, and their low words."""
@@ -58,20 +57,18 @@ def turned_with_low_words(
     return x[0], y[0], x[1], y[1]
 
 
-def sum_low_words(
-    x: Number,
-    y: Number,
-    px: Number,
-    py: Number,
-    px_lo: Number,
-    py_lo: Number,
-    qx: Number,
-    qy: Number,
-    qx_lo: Number,
-    qy_lo: Number,
+def joined(
+    px: Number, py: Number, px_lo: Number, py_lo: Number, rx: Number, ry: Number, rx_lo: Number, ry_lo: Number
+) -> Four:
+    """Return p + r as sums of two words, of which the low ones may reach into the high ones."""
+    return px + rx, py + ry, *joined_low_words(px, py, px_lo, py_lo, rx, ry, rx_lo, ry_lo)
+
+
+def joined_low_words(
+    px: Number, py: Number, px_lo: Number, py_lo: Number, rx: Number, ry: Number, rx_lo: Number, ry_lo: Number
 ) -> tuple[Number, Number]:
-    """Return what the vector (x, y) misses of p + q."""
-    return _missing(x, (px, px_lo), (qx, qx_lo)), _missing(y, (py, py_lo), (qy, qy_lo))
+    """Return the low words of p + r, whose high words are the rounded sums of their high words."""
+    return sum_low(px, rx) + (px_lo + rx_lo), sum_low(py, ry) + (py_lo + ry_lo)
 
 
 def link_low_words(
@@ -81,17 +78,18 @@ def link_low_words(
     return -(sum_low(px, rx) + px_lo), -(sum_low(py, ry) + py_lo)
 
 
-def link_to_low_words(
-    rx: Number, ry: Number, qx: Number, qy: Number, px: Number, py: Number, px_lo: Number, py_lo: Number
+def apart(
+    qx: Number, qy: Number, qx_lo: Number, qy_lo: Number, px: Number, py: Number, px_lo: Number, py_lo: Number
+) -> Four:
+    """Return the vector from p to q likewise."""
+    return joined(qx, qy, qx_lo, qy_lo, -px, -py, -px_lo, -py_lo)
+
+
+def low_words(
+    x: Number, y: Number, vx: Number, vy: Number, vx_lo: Number, vy_lo: Number, step_x: Number, step_y: Number
 ) -> tuple[Number, Number]:
-    """Return what r misses of the vector from p to the high words of q."""
-    return _missing(rx, (qx, 0.0), (-px, -px_lo)), _missing(ry, (qy, 0.0), (-py, -py_lo))
-
-
-def _missing(x: Number, p: Pair, q: Pair) -> Number:
-    """Return what x, a rounding or two away, misses of p + q."""
-    high, low = two_sum(p[0], q[0])
-    return ((high - x) + low) + (p[1] + q[1])
+    """Return what (x, y), a rounding or two away, misses of v, moved by a step."""
+    return (vx - x) + (vx_lo + step_x), (vy - y) + (vy_lo + step_y)
 
 
 def between(
@@ -110,9 +108,14 @@ def distance(x: Number, y: Number, x_lo: Number, y_lo: Number) -> Pair:
 
 
 def excess_square(x: Number, y: Number, x_lo: Number, y_lo: Number, length: Number, length_lo: Number) -> Number:
-    """Return half of length² − |(x, y)|²."""
-    s, size = ((x, x_lo), (y, y_lo)), (length, length_lo)
-    return 0.5 * difference(multiply(size, size), overlapping_dot(*s, *s))
+    """Return half of length² − |(x, y)|², for a vector whose length is this but for some roundings.
+
+    Its components are then no longer, and where the first one's square is taken off, the second one's is what remains.
+    """
+    (xx, xx_lo), (yy, yy_lo) = two_product(x, x), two_product(y, y)
+    size, size_lo = multiply((length, length_lo), (length, length_lo))
+    rest, rest_lo = ordered_sum(size, -xx)
+    return 0.5 * ((rest - yy) + (rest_lo + (size_lo - (xx_lo + yy_lo)))) - (x * x_lo + y * y_lo)
 
 
 def excess_component(
@@ -155,9 +158,10 @@ def newton_step(
     first_y: Number,
     second_x: Number,
     second_y: Number,
+    inverse: Number,
 ) -> tuple[Number, Number]:
-    """Return the step whose components along two vectors, times their lengths, are these numbers."""
-    inverse = 1.0 / cross(first_x, first_y, second_x, second_y)
+    """Return the step whose components along two vectors, times their lengths, are these numbers; `inverse` is that of
+    their cross product."""
     a, b = first_missing * inverse, second_missing * inverse
     return a * second_y - b * first_y, b * first_x - a * second_x
 
