@@ -226,12 +226,28 @@ def _press(random: Random, n: int) -> ls.Scene:
     the offset of the guide together."""
     a, d = np.exp(random.uniform(-1.5, 1.5, (2, n)))
     b, c = _dyad(random, a, d)
-    offset = c * random.uniform(-0.8, 0.8, n) * random.choice([0.0, 1.0], n)
+    offset = _offset_of_press(random, c)
     lower, friction = _rod(random, c + np.abs(offset), friction=True)
-    angle = float(random.uniform(-180.0, 180.0))
+    return _press_of(random, {"crank": a, "rod": b, "upper": c, "lower": lower}, d, offset, friction)
+
+
+def _any_press(random: Random, n: int) -> ls.Scene:
+    """Return knuckle-joint presses of any lengths, most of which move over part of a turn, with friction that wedges
+    half of them on part of that."""
+    a, b, c, d, lower = np.exp(random.uniform(-1.0, 1.0, (5, n)))
+    offset, friction = _offset_of_press(random, c), 10.0 ** random.uniform(-2.0, 0.3, n)
+    return _press_of(random, {"crank": a, "rod": b, "upper": c, "lower": lower}, d, offset, friction)
+
+
+def _offset_of_press(random: Random, upper: Array) -> Array:
+    return upper * random.uniform(-0.8, 0.8, len(upper)) * random.choice([0.0, 1.0], len(upper))
+
+
+def _press_of(random: Random, lengths: dict[str, Array], d: Array, offset: Array, friction: Array) -> ls.Scene:
+    """Return presses with links of these lengths, the upper one's pivot at d, and a guide of any direction."""
+    n, angle = len(d), float(random.uniform(-180.0, 180.0))
     across = -np.sin(np.radians(angle)), np.cos(np.radians(angle))
     guide = ls.Guide((_number(d + offset * across[0]), _number(offset * across[1])), angle, _number(friction))
-    lengths = {"crank": a, "rod": b, "upper": c, "lower": lower}
     mechanism = ls.Linkage(
         "crank A-B, rod B-C, upper D-C, lower C-E, ram E on slide",
         ground={"A": (0.0, 0.0), "D": (_number(d), 0.0)},
@@ -332,6 +348,7 @@ FAMILIES = {
     "Watt six-bar": Family(_six_bar, share=0.05),
     "six-bar of any lengths": Family(_any_six_bar, share=0.05),
     "knuckle-joint press with friction": Family(_press, share=0.05),
+    "knuckle-joint press of any lengths": Family(_any_press, share=0.05),
     "four-bar with a table": Family(_with_table(_four_bar, "rocker")),
     "slider-crank with friction and a table": Family(_with_table(_slider_crank(friction=True), "slider"), 90.0),
     "four-bar with a function": Family(_with_function(_four_bar, "rocker")),

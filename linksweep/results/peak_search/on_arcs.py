@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from linksweep.engine.peaks.samples import HALF
+from linksweep.engine.quantity import LAST_UNJAMMED
 from linksweep.results.peak_search.along_paths import SignalPeak, angle_in_period, limits_at_toggles, raise_to
 from linksweep.results.peak_search.arcs import NEAREST, arc_ends, steps_at_ends
 from linksweep.results.peak_search.groups import Group, groups
@@ -30,7 +31,7 @@ from linksweep.results.peak_search.pieces import (
     values_at,
 )
 from linksweep.results.peak_search.poles import designs_without_jams
-from linksweep.scene.pairs import Array, some_of
+from linksweep.scene.pairs import Array, in_order, some_of
 from linksweep.scene.scene import Scene
 
 PROBES = 10.0, 1.0
@@ -92,7 +93,7 @@ def follow_arcs(scene: Scene, designs: Array, peaks: dict[str, SignalPeak], thre
     """Write the peaks of designs that move over part of a turn; return those for which pieces are not enough."""
     if not (peaks and len(designs) and known_on_pieces(scene)):
         return designs
-    sound, signals = designs_without_jams(scene, designs), tuple(peaks)
+    sound, signals = designs if _jams_end_arcs(scene) else designs_without_jams(scene, designs), tuple(peaks)
     left = [np.setdiff1d(designs, sound, assume_unique=True)]
     at_once = AT_ONCE if scene.steady else LOADED_AT_ONCE
     for group in groups(scene, signals, sound, at_once, at_once):
@@ -104,14 +105,21 @@ def follow_arcs(scene: Scene, designs: Array, peaks: dict[str, SignalPeak], thre
         best, sure = _highest(group.some(arcs.row), arcs, signals, threads)
         known = np.bincount(arcs.row, minlength=len(group.designs)) > 0
         known[arcs.row[~sure]] = known[every.row[every.length <= 0.0]] = False  # some close at one angle alone
-        rows = np.flatnonzero(known)
-        part, numbers = group.some(rows), _highest_of_designs(arcs.row, best, len(known))
+        numbers = _highest_of_designs(arcs.row, best, len(known))
+        rows = np.flatnonzero(known & (numbers.value > -np.inf).any(axis=0))  # others are jammed on all arcs
+        part = group.some(rows)
         frame = part.number(scene.mechanism.near_toggle_angle)
         for k, peak in enumerate(peaks.values()):
             value, angle, bound, samples = (table[k, rows] for table in numbers)
             raise_to(peak, part, (value, angle_in_period(angle + frame, scene.period), bound, samples))
-        left.append(group.designs[~known])
+        left.append(np.delete(group.designs, rows))
     return np.sort(np.concatenate(left))
+
+
+def _jams_end_arcs(scene: Scene) -> bool:
+    """Return whether arcs are cut where friction wedges: where the crank drives, it jams all between two cuts, or
+    nothing."""
+    return scene.table.limits is not None and scene.drive == scene.mechanism.defaults["drive"]
 
 
 def _highest_of_designs(row: Array, best: Best, designs: int) -> Best:
@@ -129,13 +137,16 @@ def _highest_of_designs(row: Array, best: Best, designs: int) -> Best:
 
 
 def _arcs(group: Group) -> Arcs:
-    """Return all arcs of a group's designs, in every turn of the cycle."""
+    """Return all arcs of a group's designs, in every turn of the cycle, cut where friction wedges."""
     (starts, ends), machine = arc_ends(group), group.scene.mechanism
     turns = np.arange(0.0, group.scene.period, machine.period)
     row, nth, turn = np.nonzero(np.isfinite(starts)[..., None] & np.isfinite(turns))
-    first, last = starts[row, nth], ends[row, nth]
-    start = np.mod(first - group.number(machine.near_toggle_angle)[row], machine.period) + turns[turn]
-    return Arcs(row, start, start + (last - first))
+    first, length = starts[row, nth, None], (ends - starts)[row, nth, None]
+    start = np.mod(first[:, 0] - group.number(machine.near_toggle_angle)[row], machine.period) + turns[turn]
+    wedged = np.mod(group.zeros("wedge")[row] - first, machine.period)
+    cuts = in_order(np.concatenate([0.0 * length, np.where(wedged < length, wedged, np.nan), length], axis=1))
+    arc, nth = np.nonzero((np.diff(cuts, axis=1) > 0.0) | (length <= 0.0))
+    return Arcs(row[arc], start[arc] + cuts[arc, nth], start[arc] + cuts[arc, nth + 1])
 
 
 def _highest(group: Group, arcs: Arcs, signals: tuple[str, ...], threads: int | None) -> tuple[Best, Array]:
@@ -143,10 +154,11 @@ def _highest(group: Group, arcs: Arcs, signals: tuple[str, ...], threads: int | 
     both, probes = np.repeat([0, 1], len(PROBES)), np.multiply.outer(arcs.nearest, np.tile(PROBES, 2))
     angles = np.concatenate([arcs.beside(both, probes), (arcs.start + 0.5 * arcs.length)[:, None]], axis=1)
     values = values_at(group, (*signals, "status"), angles, threads)
-    known = (values[-1, :, -1] == 0.0) & (arcs.length > SHORTEST) & np.isfinite(values).all(axis=(0, 2))
+    status = values[-1, :, -1]
+    known = (status == 0.0) & (arcs.length > SHORTEST) & np.isfinite(values).all(axis=(0, 2))
     farther, closer, middle = values[:-1, :, :-1:2], values[:-1, :, 1:-1:2], np.abs(values[:-1, :, -1:])
     with np.errstate(invalid="ignore"):
-        grows, change = np.abs(closer) > GROWTH * np.abs(farther), np.abs(closer - farther)
+        grows, change = known[:, None] & (np.abs(closer) > GROWTH * np.abs(farther)), np.abs(closer - farther)
         infinite = grows & (closer > SURELY * middle)
         best = _on_pieces(group, arcs, signals, known & ~infinite.any(axis=2), threads)
         grows &= np.abs(closer) > LARGE * np.abs(best.value)[..., None]
@@ -161,7 +173,7 @@ def _highest(group: Group, arcs: Arcs, signals: tuple[str, ...], threads: int | 
         limit = np.minimum(limit, closer[..., end] + change[..., end])
         best.raise_to(limit > best.value, limit, edge, error)
         best.samples[...] += samples
-    return best, known
+    return best, known | (status > LAST_UNJAMMED)
 
 
 def _on_pieces(group: Group, arcs: Arcs, signals: tuple[str, ...], needs: Array, threads: int | None) -> Best:
@@ -220,6 +232,7 @@ def _steps(group: Group, arcs: Arcs) -> Array:
     """Return the steps in x (arc, end) of a search along paths, by the distances to other toggles and near-toggles."""
     frame = group.number(group.scene.mechanism.near_toggle_angle)[:, None]
     middles, widths = group.near_toggles()
-    singular = [*(ends - frame for ends in arc_ends(group)), np.where(np.isfinite(widths), middles, np.nan)]
+    singular = [ends - frame for ends in (*arc_ends(group), group.zeros("wedge"))]
+    singular.append(np.where(np.isfinite(widths), middles, np.nan))
     middle, half = 0.5 * (arcs.start + arcs.end), 0.5 * arcs.length
     return steps_at_ends(np.concatenate(singular, axis=1), middle, half, group.scene.period_of_motion)

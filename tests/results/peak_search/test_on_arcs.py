@@ -1,11 +1,15 @@
 """Peaks of linkages that move over part of a turn: on pieces of their arcs, and limits at the toggles between these."""
 
+from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
+from itertools import pairwise
 
 import numpy as np
 import pytest
 import xarray as xr
 from long import long_but
+from scipy.optimize import brentq, minimize_scalar
 
 import linksweep as ls
 from benchmarks.accuracy import missed
@@ -109,3 +113,82 @@ def test_a_design_on_arcs_has_the_same_bits_whichever_others_stand_beside_it():
         alone = ls.peaks(ls.scene_at(scene, design=design), of=[*of, *(f"{quantity}_samples" for quantity in of)])
         for name, peak in alone.data_vars.items():
             np.testing.assert_array_equal(peak, together[name].isel(design=design, missing_dims="ignore"), name)
+
+
+ROD, FRICTION, OFFSET = np.random.default_rng(3).uniform([0.4, 0.2, -0.3], [0.65, 1.5, 0.3], (24, 3)).T
+OMEGA2, ALPHA2 = 10.0, 3.0
+
+
+def slope_of_slide(angle: np.ndarray, rod: float, offset: float) -> np.ndarray:
+    """Return dx/dθ2 of a slide on a rod that is pinned to a crank of 1 m at angles [rad]."""
+    across = np.sin(angle) - offset
+    return -np.sin(angle) - across * np.cos(angle) / np.sqrt(rod * rod - across * across)
+
+
+def force_and_torque(angle: np.ndarray, toward: float, rod: float, friction: float, offset: float) -> list[np.ndarray]:
+    """Return the force P along the guide of a rod without mass on a slide of 1 kg, and the torque on the crank.
+
+    The slide moves `toward` greater x, or less. P accelerates it against friction: P − μ·sign(v)·|P·tan φ| = a, where φ
+    is the angle between rod and guide; where μ·|tan φ| = 1, P is a/2 or infinite.
+    """
+    across = np.sin(angle) - offset
+    along, slope = np.sqrt(rod * rod - across * across), slope_of_slide(angle, rod, offset)
+    bend = -np.cos(angle) - (np.cos(angle) ** 2 * rod * rod / along**2 - across * np.sin(angle)) / along
+    acceleration = bend * OMEGA2**2 + slope * ALPHA2
+    share = 1.0 - toward * np.sign(acceleration) * friction * np.abs(across) / along
+    with np.errstate(divide="ignore"):
+        force = acceleration / np.where(share < 1e-12, 0.0, share)
+    return [force, force * slope]
+
+
+def largest(function: Callable[[np.ndarray], np.ndarray], start: float, end: float) -> float:
+    angles = np.linspace(start, end, 3001)
+    values = function(angles)
+    top = int(values.argmax())
+    about = angles[max(top - 1, 0)], angles[min(top + 1, 3000)]
+    return max(values[top], -minimize_scalar(lambda angle: -function(angle), bounds=about, method="bounded").fun)
+
+
+def bounds_where_friction_does_not_wedge(rod: float, friction: float, offset: float) -> np.ndarray:
+    """Return the least and the largest force, and torque, between the angles at which friction wedges, ends included.
+
+    There the slide lies sin φ = 1/√(1 + μ²) of the rod beside the crank pin; where it stands still, friction jumps.
+    """
+    wedged = np.arcsin(offset + rod / np.hypot(1.0, friction) * np.array([-1.0, 1.0]))
+    of_pieces = []
+    for first, last in (wedged, np.pi - wedged[::-1]):
+        cuts, slope = np.linspace(first, last, 3001), partial(slope_of_slide, rod=rod, offset=offset)
+        turned = np.flatnonzero(slope(cuts[:-1]) * slope(cuts[1:]) < 0.0)
+        ends = [first, *(brentq(slope, cuts[k], cuts[k + 1], xtol=1e-15) for k in turned), last]
+        for piece in pairwise(ends):
+            toward = np.sign(slope(0.5 * sum(piece)))
+            at = partial(force_and_torque, toward=toward, rod=rod, friction=friction, offset=offset)
+            force, torque = (lambda angle, at=at, k=k: at(angle)[k] for k in range(2))
+            of_pieces.append([bounds(force, *piece), bounds(torque, *piece)])
+    low, high = np.moveaxis(of_pieces, -1, 0)
+    return np.stack([low.min(axis=0), high.max(axis=0)], axis=1)
+
+
+def bounds(function: Callable[[np.ndarray], np.ndarray], start: float, end: float) -> tuple[float, float]:
+    return -largest(lambda angle: -function(angle), start, end), largest(function, start, end)
+
+
+def test_arcs_end_where_friction_wedges(monkeypatch):
+    rod, friction, offset = (xr.DataArray(numbers, dims="design") for numbers in (ROD, FRICTION, OFFSET))
+    machine = ls.Linkage(
+        "crank A-B, rod B-C, ram C on slide",
+        ground={"A": (0.0, 0.0)},
+        guides={"slide": ls.Guide((0.0, offset), 0.0, friction)},
+        crank=ls.Link(1.0, 0.0, 0.0),
+        rod=ls.Link(rod, 0.0, 0.0),
+        ram=ls.Slider(1.0),
+    )
+    designs = zip(ROD, FRICTION, OFFSET, strict=True)
+    exact_bounds = np.array([bounds_where_friction_does_not_wedge(*numbers) for numbers in designs])
+    force, torque = exact_bounds[:, 0], exact_bounds[:, 1]
+    assert np.isfinite(exact_bounds[:, [0, 1], [1, 0]]).all() and np.isinf(exact_bounds[:, [0, 1], [0, 1]]).all()
+    counts = counted(monkeypatch, exact.follow_arcs)
+    peaks = ls.peaks(ls.Scene(machine, OMEGA2, ALPHA2), of=["F43x", "T12"])  # F43 acts on the rod
+    np.testing.assert_allclose([peaks.F43x_min, peaks.F43x_max], -force.T[::-1], rtol=1e-9)
+    np.testing.assert_allclose([peaks.T12_min, peaks.T12_max], torque.T, rtol=1e-9)
+    assert counts == [len(ROD), 0]
