@@ -130,8 +130,8 @@ def unless_jammed(name: str) -> str:
 
 
 def regardless_of_jams(name: str) -> str:
-    """Return the name of a quantity's values that may be those unless jammed."""
-    return name.removesuffix(unless_jammed(""))
+    """Return the name of a quantity's values that may be those unless jammed, or where the status is ok."""
+    return name.removesuffix(unless_jammed("")).removesuffix(where_ok(""))
 
 
 def _where_ok(status: Any, value: Any) -> Any:

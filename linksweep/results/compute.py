@@ -12,6 +12,7 @@ from linksweep.base.fields import PairField
 from linksweep.base.validate import Rule, name_problems, quote, refuse
 from linksweep.chains.between_links import force_name
 from linksweep.chains.rows.pins import Pins
+from linksweep.engine.quantity import unless_jammed
 from linksweep.engine.run import Field, Grid, evaluate
 from linksweep.engine.trace.plan import InputForms, Plan, plan
 from linksweep.engine.trace.superpose import superposed
@@ -189,9 +190,9 @@ def shows_status(scene: Scene, name: str) -> bool:
     return scene.table.limits is None and set(status) <= set(own)
 
 
-def jams_unknown(scene: Scene) -> bool:
-    """Return whether friction may jam a machine where no closed form tells."""
-    return scene.mechanism.rubs and scene.table.limits is not None
+def names_unless_jammed(scene: Scene, names: tuple[str, ...]) -> dict[str, str]:
+    """Return the `known_names` of values where friction does not jam a machine; their own where nothing rubs."""
+    return known_names(scene, names, unless_jammed) if scene.mechanism.rubs else {name: name for name in names}
 
 
 def surely_ok(scene: Scene) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from itertools import chain
 from typing import NamedTuple
 
@@ -20,8 +20,8 @@ from linksweep.results.compute import (
     angles_missing,
     changing_pace,
     compute,
-    jams_unknown,
     known_names,
+    names_unless_jammed,
     only_where,
     planned,
     quantity_problems,
@@ -32,7 +32,9 @@ from linksweep.results.dataset import design_coordinates, flags, plain, provenan
 from linksweep.results.direct_dataset import dataset_of
 from linksweep.results.peak_search.along_paths import SignalPeak
 from linksweep.results.peak_search.between import EVERYWHERE, NEVER
-from linksweep.results.peak_search.exact import exact_peaks, peaks_where, peaks_within
+from linksweep.results.peak_search.exact import exact_peaks, of_designs_that_share, peaks_where, peaks_within
+from linksweep.results.peak_search.friction.jams import may_jam
+from linksweep.results.peak_search.friction.motion import of_free_angles
 from linksweep.results.peak_search.limits import assembly_of
 from linksweep.results.peak_search.paths import Part
 from linksweep.results.peak_search.poles import with_dead_centres
@@ -166,11 +168,9 @@ def _exact(scene: Scene, items: list[Request], threads: int | None, part: Part |
     angles = STATUS_ANGLES * turns if part is None else np.linspace(*part, STATUS_ANGLES + 1)
     grid = scene.grid(angles)
     assembly, (signals, powers) = assembly_of(scene, threads), needed(items)
-    names = tuple(dict.fromkeys((*signals, *(name for name, _ in powers))))
-    sampled, own = scene.at_one_angle, {name: name for name in names}
-    known_signals = own
-    if jams_unknown(scene):
-        own, known_signals = known_names(sampled, names, unless_jammed), {s: unless_jammed(s) for s in signals}
+    sampled, known_signals = scene.at_one_angle, {signal: signal for signal in signals}
+    if may_jam(scene):
+        known_signals = {signal: unless_jammed(signal) for signal in signals}
     searched = tuple(known_signals[signal] for signal in signals)
     if not signals:
         peaks = {}
@@ -178,8 +178,9 @@ def _exact(scene: Scene, items: list[Request], threads: int | None, part: Part |
         peaks = exact_peaks(scene, searched, assembly, threads)
     else:
         peaks = peaks_within(scene, searched, part, threads)
-    largest = _of_designs_that_share(sampled, {signal: peaks[known_signals[signal]] for signal in signals})
-    averages = _means(scene, powers, own, part, threads)
+    largest = of_designs_that_share(sampled, {signal: peaks[known_signals[signal]] for signal in signals})
+    largest = of_free_angles(scene, largest, assembly, part, threads)
+    averages = _means(scene, powers, part, threads) if powers else {}
     if part is None:
         known, by_samples = with_dead_centres(scene, assembly), scene.table.limits is not None
     else:
@@ -187,12 +188,12 @@ def _exact(scene: Scene, items: list[Request], threads: int | None, part: Part |
     return Result(sampled, grid, known, by_samples, largest, averages)
 
 
-def _means(
-    scene: Scene, powers: tuple[Power, ...], known: Mapping[str, str], part: Part | None, threads: int | None
-) -> Averages:
-    """Return the means over time of powers of quantities, whose known values have other names."""
-    named = {power: (known[power[0]], power[1]) for power in powers}
-    averages = means(scene, tuple(named.values()), changing_pace(scene.at_one_angle), part, threads) if powers else {}
+def _means(scene: Scene, powers: tuple[Power, ...], part: Part | None, threads: int | None) -> Averages:
+    """Return the means over time of powers of quantities, over the angles at which friction does not jam a design."""
+    sampled = scene.at_one_angle
+    known = names_unless_jammed(sampled, tuple(name for name, _ in powers))
+    named = {(name, n): (known[name], n) for name, n in powers}
+    averages = means(scene, tuple(named.values()), changing_pace(sampled), part, threads)
     return {power: averages[name] for power, name in named.items()}
 
 
@@ -217,37 +218,13 @@ def _of_samples(scene: Scene, angles: ArrayLike, items: list[Request], threads: 
     for signal, reduction in largest.items():
         value, angle = reduced[reduction]
         extremes[signal] = SignalPeak(value, angle, value, value)
-    extremes = _of_designs_that_share(sampled, extremes)
+    extremes = of_designs_that_share(sampled, extremes)
     averaged = {power: reduced[reduction][0] for power, reduction in averages.items()}
     averaged |= _over_time(sampled, grid, powers, pace[0], threads, solver) if pace else {}
     # a search for where designs close takes longer than samples, whose status shows enough
     by_samples = scene.table.limits is not None
     assembly = Field((), np.zeros(())) if by_samples else assembly_of(scene, threads)
     return Result(sampled, grid, assembly, by_samples, extremes, averaged)
-
-
-def _of_designs_that_share(scene: Scene, peaks: dict[str, SignalPeak]) -> dict[str, SignalPeak]:
-    """Return peaks over the dims of their signals alone: of all designs that share a signal, but differ in where its
-    values are known, the highest."""
-    own = plan(scene.table, tuple(peaks), scene.inputs.forms).outputs
-    return {signal: _highest_over(peak, own[signal].dims) for signal, peak in peaks.items()}
-
-
-def _highest_over(peak: SignalPeak, dims: Collection[str]) -> SignalPeak:
-    """Return a peak over these of its dims, the highest along the others; its bound reaches as high as any."""
-    kept = tuple(dim for dim in peak.value.dims if dim in dims)
-    if kept == peak.value.dims:
-        return peak
-    order = (*kept, *(dim for dim in peak.value.dims if dim not in dims))
-    rows = (aligned(field, order) for field in peak)
-    value, angle, bound, samples = (row.reshape(*row.shape[: len(kept)], -1) for row in rows)
-    highest = np.where(np.isnan(value), -np.inf, value).argmax(axis=-1)[..., None]
-    best, best_angle = (np.take_along_axis(row, highest, axis=-1) for row in (value, angle))
-    with np.errstate(invalid="ignore"):  # of infinite peaks
-        beyond = np.fmax.reduce(np.nan_to_num(value + bound - best, posinf=np.inf), axis=-1)
-    best, best_angle, samples = best[..., 0], best_angle[..., 0], np.fmax.reduce(samples, axis=-1)
-    numbers = best, best_angle, np.where(np.isnan(best), np.nan, beyond), samples
-    return SignalPeak(*(Field(kept, row) for row in numbers))
 
 
 def _over_time(

@@ -45,6 +45,7 @@ from linksweep.results.derivatives.of_peaks import (
     turning_point_derivatives,
     unlike,
 )
+from linksweep.results.peak_search.friction.motion import jams
 from linksweep.results.peaks import peaks
 from linksweep.scene.at_sections import with_sections
 from linksweep.scene.derivatives.differentiated import MOTION
@@ -298,7 +299,9 @@ def _mean(scene: Scene, stem: str, end: str, to: tuple[str, ...], threads: int |
     slopes = mean_derivatives(scene, str(of), power, to, threads)
     if end == "rms":
         slopes = {path: slope / (2.0 * value) for path, slope in slopes.items()}
-    return Derived(value, slopes, xr.where(np.isfinite(value), JUMP if moving_unknown(scene, to) else OK, NONE))
+    jammed = jams(scene)  # a mean is that of the other angles, and the ends of a jam move
+    unknown = moving_unknown(scene, to) | jammed.any([dim for dim in jammed.dims if dim not in value.dims])
+    return Derived(value, slopes, xr.where(np.isfinite(value), xr.where(unknown, JUMP, OK), NONE))
 
 
 def _flywheel(scene: Scene, to: tuple[str, ...], threads: int | None, fluctuation: float) -> Derived:

@@ -15,8 +15,8 @@ from linksweep.base.checked_number import checked_number
 from linksweep.base.frozen import with_arrays
 from linksweep.base.validate import Number, refuse
 from linksweep.chains.between_links import pair_of
-from linksweep.engine.quantity import opposite_of, unless_jammed
-from linksweep.results.compute import jams_unknown, known_names, require
+from linksweep.engine.quantity import opposite_of
+from linksweep.results.compute import names_unless_jammed, require
 from linksweep.results.dataset import with_units
 from linksweep.results.over_time import mean_over_time
 from linksweep.results.peak_search.along_paths import PathsOf, angle_in_period, highest
@@ -204,8 +204,8 @@ def _least_margin(
     index = scene.mechanism.index
     if part is not None and not 0.0 < part[1] - part[0] <= scene.period:  # one angle, or several cycles: of the samples
         return margin.min(index), margin.fillna(np.inf).idxmin(index)
-    known = known_names(scene, names, unless_jammed) if jams_unknown(scene) else {name: name for name in names}
-    signals, designs = tuple(known[name] for name in names), margin.isel({index: 0}, drop=True)
+    signals = tuple(names_unless_jammed(scene.at_one_angle, names).values())
+    designs = margin.isel({index: 0}, drop=True)
     own = empty_over_all(scene, signals).dims
     least, at = np.full((2, designs.size), np.nan)
     for kind, group in assembled_groups(scene, signals):

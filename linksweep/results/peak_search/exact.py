@@ -13,6 +13,7 @@ A peak is a value of the signal at some angle, so that it exceeds the true one b
 from __future__ import annotations
 
 import math
+from collections.abc import Collection
 from functools import partial
 from typing import Any
 
@@ -70,12 +71,12 @@ def exact_peaks(
 
 
 def peaks_within(
-    scene: Scene, signals: tuple[str, ...], part: Part, threads: int | None = None
+    scene: Scene, signals: tuple[str, ...], part: Part, threads: int | None = None, designs: Array | None = None
 ) -> dict[str, SignalPeak]:
-    """Return the peak of each signal between two angles [degree], ends included; angles of peaks lie between them, and
-    are equal to an end where the peak stands there."""
-    peaks = _by_paths(scene, signals, threads, (partial(arcs_within, part),))
-    _raise_to_poles(scene, peaks, threads, part)
+    """Return the peak of each signal between two angles [degree], ends included, of all designs or of these; angles of
+    peaks lie between them, and are equal to an end where the peak stands there."""
+    peaks = _by_paths(scene, signals, threads, (partial(arcs_within, part),), designs)
+    _raise_to_poles(scene, peaks, threads, part, designs)
     middle, half = 0.5 * (part[0] + part[1]), 0.5 * (part[1] - part[0])
     for *_, angle, _bound, _samples in peaks.values():
         away = np.mod(angle.values - middle + 0.5 * scene.period, scene.period) - 0.5 * scene.period
@@ -84,9 +85,24 @@ def peaks_within(
     return peaks
 
 
-def _raise_to_poles(scene: Scene, peaks: dict[str, SignalPeak], threads: int | None, part: Part | None = None) -> None:
+def peaks_along_paths(
+    scene: Scene, signals: tuple[str, ...], designs: Array, threads: int | None = None
+) -> dict[str, SignalPeak]:
+    """Return the peak of each signal over the revolution of these designs, from a search along paths alone."""
+    peaks = _by_paths(scene, signals, threads, designs=designs)
+    _raise_to_poles(scene, peaks, threads, designs=designs)
+    return peaks
+
+
+def _raise_to_poles(
+    scene: Scene,
+    peaks: dict[str, SignalPeak],
+    threads: int | None,
+    part: Part | None = None,
+    designs: Array | None = None,
+) -> None:
     if may_have_poles(scene, tuple(peaks)):
-        designs = different(scene, (*peaks, "assembly"))
+        designs = different(scene, (*peaks, "assembly")) if designs is None else designs
         if scene.table.limits is None:
             designs = designs_with_candidates(scene, designs, tuple(peaks))
         for _, group in assembled_groups(scene, tuple(peaks), designs=designs):
@@ -94,18 +110,25 @@ def _raise_to_poles(scene: Scene, peaks: dict[str, SignalPeak], threads: int | N
 
 
 def _by_paths(
-    scene: Scene, signals: tuple[str, ...], threads: int | None, paths: tuple[PathsOf, ...] = ()
+    scene: Scene,
+    signals: tuple[str, ...],
+    threads: int | None,
+    paths: tuple[PathsOf, ...] = (),
+    designs: Array | None = None,
 ) -> dict[str, SignalPeak]:
-    """Return peaks from a search along these paths, or along those for each design's kind of assembly."""
+    """Return peaks from a search along these paths, or along those for each design's kind of assembly; `designs` are
+    searched along paths alone."""
     peaks = {signal: nothing(field) for signal, field in empty(scene, signals).items()}
     on_pieces = {}
-    if not paths and known_on_pieces(scene):
+    if designs is None and not paths and known_on_pieces(scene):
         on_pieces = {signal: peaks[signal] for signal in _turning(scene, signals)}
         left = _follow_on_pieces(
             scene, {regardless_of_jams(signal): peak for signal, peak in on_pieces.items()}, threads
         )
         _follow_all(scene, on_pieces, paths, threads, left)
-    _follow_all(scene, {signal: peaks[signal] for signal in signals if signal not in on_pieces}, paths, threads)
+    _follow_all(
+        scene, {signal: peaks[signal] for signal in signals if signal not in on_pieces}, paths, threads, designs
+    )
     if scene.quick.all:
         return peaks
     over_angle = {signal: peak for signal, peak in peaks.items() if changes(scene, (signal,))}
@@ -197,6 +220,30 @@ def _without(designs: Array, others: Array) -> Array:
 def peaks_where(good: Field, peaks: dict[str, SignalPeak]) -> dict[str, SignalPeak]:
     """Return the peaks, NaN where no design that shares one is good."""
     return {signal: SignalPeak(*(only_where(good, field) for field in peak)) for signal, peak in peaks.items()}
+
+
+def of_designs_that_share(scene: Scene, peaks: dict[str, SignalPeak]) -> dict[str, SignalPeak]:
+    """Return peaks over the dims of their signals alone: of all designs that share a signal, but differ in where its
+    values are known, the highest."""
+    own = plan(scene.table, tuple(peaks), scene.inputs.forms).outputs
+    return {signal: _highest_over(peak, own[signal].dims) for signal, peak in peaks.items()}
+
+
+def _highest_over(peak: SignalPeak, dims: Collection[str]) -> SignalPeak:
+    """Return a peak over these of its dims, the highest along the others; its bound reaches as high as any."""
+    kept = tuple(dim for dim in peak.value.dims if dim in dims)
+    if kept == peak.value.dims:
+        return peak
+    order = (*kept, *(dim for dim in peak.value.dims if dim not in dims))
+    rows = (aligned(field, order) for field in peak)
+    value, angle, bound, samples = (row.reshape(*row.shape[: len(kept)], -1) for row in rows)
+    highest = np.where(np.isnan(value), -np.inf, value).argmax(axis=-1)[..., None]
+    best, best_angle = (np.take_along_axis(row, highest, axis=-1) for row in (value, angle))
+    with np.errstate(invalid="ignore"):  # of infinite peaks
+        beyond = np.fmax.reduce(np.nan_to_num(value + bound - best, posinf=np.inf), axis=-1)
+    best, best_angle, samples = best[..., 0], best_angle[..., 0], np.fmax.reduce(samples, axis=-1)
+    numbers = best, best_angle, np.where(np.isnan(best), np.nan, beyond), samples
+    return SignalPeak(*(Field(kept, row) for row in numbers))
 
 
 # ----------------------------------------------------------------------------------------- the fused search

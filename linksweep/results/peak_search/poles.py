@@ -17,6 +17,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.chains.finding import Finding
+from linksweep.engine.quantity import regardless_of_jams
 from linksweep.engine.run import Field
 from linksweep.results.compute import surely_ok
 from linksweep.results.peak_search.between import PARTLY
@@ -54,7 +55,7 @@ def may_have_poles(scene: Scene, signals: tuple[str, ...]) -> bool:
 
 
 def _of_output(signals: tuple[str, ...]) -> bool:
-    return any(signal.removeprefix("-") in OF_OUTPUT for signal in signals)
+    return any(regardless_of_jams(signal).removeprefix("-") in OF_OUTPUT for signal in signals)
 
 
 def with_dead_centres(scene: Scene, assembly: Field) -> Field:

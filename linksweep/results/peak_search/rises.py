@@ -12,12 +12,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from linksweep.engine.quantity import unless_jammed
-from linksweep.results.compute import jams_unknown, known_names
+from linksweep.engine.quantity import unless_jammed, where_ok
+from linksweep.results.compute import known_names
 from linksweep.results.peak_search.along_paths import highest, rises
 from linksweep.results.peak_search.arcs import arc_ends, arcs_within
 from linksweep.results.peak_search.between import EVERYWHERE, PARTLY
 from linksweep.results.peak_search.exact import paths_of
+from linksweep.results.peak_search.friction.jams import may_jam
 from linksweep.results.peak_search.groups import Group, groups
 from linksweep.scene.pairs import Array, in_period
 from linksweep.scene.scene import Scene
@@ -79,8 +80,11 @@ def sector_peaks(scene: Scene, signals: tuple[str, ...], sectors: int) -> tuple[
 
 def _known(scene: Scene, signals: tuple[str, ...]) -> tuple[str, ...]:
     """Return the names of the signals' values that exist: none where friction jams a machine."""
-    known = known_names(scene.at_one_angle, signals, unless_jammed) if jams_unknown(scene) else {}
-    return tuple(known.get(signal, signal) for signal in signals)
+    if not scene.mechanism.rubs:
+        return signals
+    # where closed forms tell of jams, dead centres of the drive are inside of them
+    known = unless_jammed if may_jam(scene) else where_ok
+    return tuple(known_names(scene.at_one_angle, signals, known).values())
 
 
 def _by_assembly(scene: Scene, signals: tuple[str, ...], designs: Array) -> Iterator[tuple[Array, float, Group]]:

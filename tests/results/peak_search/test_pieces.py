@@ -93,10 +93,13 @@ def one_engine(friction: float | xr.DataArray) -> ls.Scene:
 def test_jammed_designs_among_others_are_searched_along_paths():
     friction = xr.DataArray([0.1, 9.0], dims="mu")
     every = ls.peaks(one_engine(friction), of=["T12", "theta3"])
-    for k, own in enumerate(friction.values):
-        alone = ls.peaks(one_engine(float(own)), of=["T12", "theta3"])
-        for name, values in alone.data_vars.items():
-            np.testing.assert_array_equal(values, every[name].isel(mu=k, missing_dims="ignore"), err_msg=name)
+    free, jammed = (ls.peaks(one_engine(float(own)), of=["T12", "theta3"]) for own in friction.values)
+    for name, values in free.data_vars.items():
+        np.testing.assert_array_equal(values, every[name].isel(mu=0, missing_dims="ignore"), err_msg=name)
+    for name in ("T12_max", "T12_max_at", "T12_min", "T12_min_at", "T12_peak", "status"):
+        np.testing.assert_array_equal(jammed[name], every[name].isel(mu=1), err_msg=name)
+    # the rod's angle, which they share, is that of the free design; alone the other jams where its tangent is 1/μ
+    assert float(jammed.theta3_max) == pytest.approx(math.degrees(math.atan(1.0 / 9.0)), rel=1e-10)
 
 
 def test_compiled_and_interpreted_searches_of_pieces_give_the_same_bits(monkeypatch):
