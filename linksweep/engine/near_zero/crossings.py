@@ -92,7 +92,7 @@ def flat_place(samples, j, signal):
     height = first + p * (rise + q * (bend + r * change))
     side = 1.0 if slope > 0.0 else -1.0
     near = side * change > 0.0 and w < at and at < z and abs(height) < 0.6 * abs(change) * step * step * step
-    return near and -2.4 * side * change * step * step < side * least and side * least < 0.25 * side * slope, at
+    return near and -2.4 * side * change * step * step < side * least and side * least < 0.5 * side * slope, at
 
 
 def find_zeros(crossings, counts, lanes, own, evaluate, front, results):
