@@ -47,7 +47,7 @@ class Missed(NamedTuple):
 
 class Family(NamedTuple):
     """Random scenes of one kind, and the crank angle [degree] of one of their near-toggles; the other is opposite. The
-    share of all designs that is searched is small where a design takes a hundred times as long."""
+    share of all designs that is searched is smaller where a design takes a hundred times as long."""
 
     scene: Callable[[Random, int], ls.Scene]
     near_toggle: float = 0.0
@@ -345,10 +345,10 @@ FAMILIES = {
     "slider-crank": Family(_slider_crank(friction=False), 90.0),
     "slider-crank with friction": Family(_slider_crank(friction=True), 90.0),
     "inverted slider-crank": Family(_inverted_slider_crank),
-    "Watt six-bar": Family(_six_bar, share=0.05),
-    "six-bar of any lengths": Family(_any_six_bar, share=0.05),
-    "knuckle-joint press with friction": Family(_press, share=0.05),
-    "knuckle-joint press of any lengths": Family(_any_press, share=0.05),
+    "Watt six-bar": Family(_six_bar, share=0.5),
+    "six-bar of any lengths": Family(_any_six_bar, share=0.5),
+    "knuckle-joint press with friction": Family(_press, share=0.5),
+    "knuckle-joint press of any lengths": Family(_any_press, share=0.5),
     "four-bar with a table": Family(_with_table(_four_bar, "rocker")),
     "slider-crank with friction and a table": Family(_with_table(_slider_crank(friction=True), "slider"), 90.0),
     "four-bar with a function": Family(_with_function(_four_bar, "rocker")),
