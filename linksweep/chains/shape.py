@@ -93,5 +93,6 @@ class Arms:
             if motion.fixed(q) and motion.fixed(start) and not motion.is_origin(start):
                 on_ground = full(f"ground_{start}_{q}")
                 motion.row(pins.between, on_ground, *motion.place(q), *motion.place(start))
+                self.add(start, q, on_ground)
                 return arm, on_ground
         return None

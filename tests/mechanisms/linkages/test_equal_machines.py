@@ -104,3 +104,21 @@ def test_a_line_past_a_pin_is_one_through_a_block_without_mass(friction):
     assert not one.status.any()
     for name, same in {"T12": "T12", "F12x": "F12x", "F13y": "F13y", "F32x": "F42x", "x_rocker": "x_block"}.items():
         np.testing.assert_allclose(one[name], other[same], rtol=1e-13, atol=1e-13, err_msg=name)
+
+
+def test_two_equal_chains_between_the_same_pivots():
+    """The vector between the pivots is made once, for both."""
+    links = {"crank": CRANK, "coupler": ROD, "rocker": LEVER, **dict.fromkeys(("rod", "rod2"), LEVER)}
+    twice = ls.Linkage(
+        "crank A-B, coupler B-C, rocker D-C-E, rod E-F, output G-F, rod2 E-H, output2 G-H",
+        ground={**PIVOTS, "G": (0.5, 0.1)},
+        points={"E": (0.2, -30.0)},
+        **links,
+        **dict.fromkeys(("output", "output2"), ARM),
+    )
+    made = [name for row in scene(twice).table.rows for name in row.outputs]
+    assert made.count("ground_D_Gx") == 1
+    cycle = swept(scene(twice), THETA2)
+    assert (cycle.status == 0).any()
+    for one, other in (("omega6", "omega8"), ("Fx", "Hx"), ("F65", "F87"), ("F16", "F18")):
+        np.testing.assert_array_equal(cycle[one], cycle[other])
