@@ -297,7 +297,7 @@ def test_the_lightest_press_keeps_its_stroke():
 @pytest.mark.nightly
 def test_differential_evolution_confirms_the_lightest_press():
     best = lightest_press()
-    other = search(best, constraints=best.constraints, maxiter=60, polish=False)
+    other = search(best, constraints=best.constraints, polish=False)
     assert other.fun == pytest.approx(90.326, rel=5e-3) and other.fun >= 90.326 * (1 - 1e-5)
 
 
