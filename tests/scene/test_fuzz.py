@@ -26,6 +26,8 @@ from linksweep.scene import file
 from linksweep.scene.file.reading import parse_scene
 from linksweep.scene.grid import crank_grid
 
+pytestmark = pytest.mark.filterwarnings("ignore::linksweep.OvershootWarning")  # rough tables, of few angles
+
 EXAMPLES = os.environ.get("LINKSWEEP_FUZZ")
 FOREVER = 60  # seconds: an example takes some hundredths
 fuzzed = settings(
