@@ -177,9 +177,9 @@ def _fused_first(scene: Scene, signals: tuple[str, ...], assembly: Field, thread
     peaks |= _fused(scene, others, _without(searched, divided), smooth, threads)
     follow_pieces(scene, divided, {signal: peaks[signal] for signal in rubbing}, threads)
     whole = _without(whole, divided)
-    if not smooth:
+    if others and not smooth:
         for group in groups(scene, names, whole, WINDOWS_AT_ONCE):
-            follow(group, peaks, (about_breaks,), threads)
+            follow(group, {signal: peaks[signal] for signal in others}, (about_breaks,), threads)
     if scene.approaches():
         narrow = np.intersect1d(with_narrow_approaches(scene, threads), whole)
         for group in groups(scene, names, narrow, WINDOWS_AT_ONCE):

@@ -69,6 +69,19 @@ def test_peaks_reach_the_densest_samples_and_are_values_of_the_signal(scene):
         assert float(beside.max()) == pytest.approx(float(peaks.F32_peak[k]), rel=1e-8)
 
 
+@pytest.mark.parametrize(
+    ("scene", "motion"), [(engines(), "x_slider"), (engines(), "a_slider"), (inverted(), "theta4")]
+)
+def test_friction_changes_no_bit_and_no_sample_of_a_motion(scene, motion):
+    """No jump of friction is in it: alone or beside forces, it is searched as if nothing rubbed."""
+    smooth = replace(scene, mechanism=replace(scene.mechanism, friction=0.0))
+    of = [motion, f"{motion}_samples"]
+    alone, beside, free = ls.peaks(scene, of=of), ls.peaks(scene, of=[*of, "F32"]), ls.peaks(smooth, of=of)
+    for name in (f"{motion}_{summary}" for summary in ("max", "max_at", "min", "min_at", "samples")):
+        np.testing.assert_array_equal(alone[name], beside[name], err_msg=name)
+        np.testing.assert_array_equal(alone[name], free[name], err_msg=name)
+
+
 def test_the_slider_turns_round_and_the_guide_bears_nothing_only_at_ends_of_pieces():
     scene = engines()
     (group,) = groups(scene, ("T12",), np.arange(DESIGNS))
