@@ -56,8 +56,9 @@ from linksweep.scene.grid import NAMES as GRID_ROWS
 from linksweep.scene.pairs import Array, changes, in_period
 from linksweep.scene.scene import Scene
 
-WINDOWS_AT_ONCE = 4096
-"""Designs whose windows are searched together: a window has few samples, so there can be more than of whole turns."""
+FEW_SAMPLES_AT_ONCE = 4096
+"""Designs whose windows or poles are searched together: they have few samples, so there can be more than of whole
+turns."""
 
 
 def exact_peaks(
@@ -105,7 +106,7 @@ def _raise_to_poles(
         designs = different(scene, (*peaks, "assembly")) if designs is None else designs
         if scene.table.limits is None:
             designs = designs_with_candidates(scene, designs, tuple(peaks))
-        for _, group in assembled_groups(scene, tuple(peaks), designs=designs):
+        for _, group in assembled_groups(scene, tuple(peaks), designs=designs, at_once=FEW_SAMPLES_AT_ONCE):
             raise_to_poles(group, peaks, threads, part)
 
 
@@ -178,11 +179,11 @@ def _fused_first(scene: Scene, signals: tuple[str, ...], assembly: Field, thread
     follow_pieces(scene, divided, {signal: peaks[signal] for signal in rubbing}, threads)
     whole = _without(whole, divided)
     if others and not smooth:
-        for group in groups(scene, names, whole, WINDOWS_AT_ONCE):
+        for group in groups(scene, names, whole, FEW_SAMPLES_AT_ONCE):
             follow(group, {signal: peaks[signal] for signal in others}, (about_breaks,), threads)
     if scene.approaches():
         narrow = np.intersect1d(with_narrow_approaches(scene, threads), whole)
-        for group in groups(scene, names, narrow, WINDOWS_AT_ONCE):
+        for group in groups(scene, names, narrow, FEW_SAMPLES_AT_ONCE):
             follow(group, peaks, (about_approaches,), threads)
     if len(partly):
         constant = tuple(signal for signal in signals if signal not in turning)

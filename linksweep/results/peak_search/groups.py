@@ -126,10 +126,14 @@ def groups(
 
 
 def assembled_groups(
-    scene: Any, names: tuple[str, ...], kinds: tuple[float, ...] = (EVERYWHERE, PARTLY), designs: Array | None = None
+    scene: Any,
+    names: tuple[str, ...],
+    kinds: tuple[float, ...] = (EVERYWHERE, PARTLY),
+    designs: Array | None = None,
+    at_once: int = AT_ONCE,
 ) -> Iterator[tuple[float, Any]]:
     """Yield the designs of each of these kinds of assembly, with the kind, in groups."""
-    chosen = () if designs is None else (designs,)
+    chosen = () if designs is None else (designs, at_once)
     for group in groups(scene, (*names, "assembly"), *chosen):
         assembly = group.assembly()
         for kind in kinds:
