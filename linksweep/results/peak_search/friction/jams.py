@@ -50,8 +50,9 @@ def may_jam(scene: Scene) -> bool:
 
 
 def jammed_designs(scene: Scene) -> Field:
-    """Return whether each design is jammed at any angle."""
+    """Return whether each design that closes at all angles is jammed at any."""
     jammed, every = empty_over_all(scene, STATUS), all_at_once(scene, different(scene, STATUS))
+    every = every.some(np.flatnonzero(every.assembly() == EVERYWHERE))
     same = _never_changes(every)
     known = every.some(np.flatnonzero(same))
     row = np.arange(len(known.designs))
@@ -65,11 +66,10 @@ def jammed_designs(scene: Scene) -> Field:
 
 
 def _never_changes(group: Group) -> Array:
-    """Return whether each design is jammed at all angles or at none: jams begin where friction wedges, or where one of
-    two contacts bears nothing."""
+    """Return whether each design that closes at all angles is jammed at all or at none: jams begin where friction
+    wedges, or where one of two contacts bears nothing."""
     begins = np.concatenate([group.zeros("wedge"), group.zeros("dead_centre")], axis=1)
-    known = (group.assembly() == EVERYWHERE) & ~np.isfinite(begins).any(axis=1)
-    return known & (not group.scene.table.contacts)
+    return ~np.isfinite(begins).any(axis=1) & (not group.scene.table.contacts)
 
 
 def jam_tables(scene: Scene) -> tuple[tuple[str, ...], Array, Array, Array]:
