@@ -16,14 +16,20 @@ if TYPE_CHECKING:
 
 
 def place_cylinder(motion: Motion, role: str) -> None:
-    """Add rows and quantities of a cylinder's length and of its rate, from the places of its pins."""
+    """Add rows and quantities of a cylinder's length and of its rate: those that are given, or else from the places of
+    its pins."""
     P, Q = motion.topology.cylinders[role]
-    length = f"length_{role}"
+    length, lengthening, axis = f"length_{role}", f"lengthening_{role}", xy(f"axis_{role}")
     motion.row(planar.difference, xy(f"span_{role}"), *motion.place(Q)[:2], *motion.place(P)[:2])
-    motion.row(cylinder.span, (length, *xy(f"axis_{role}")), *xy(f"span_{role}"))
-    motion.row(planar.difference, xy(f"u_span_{role}"), *motion.motion(Q, "u"), *motion.motion(P, "u"))
-    motion.row(planar.dot, (f"lengthening_{role}",), *xy(f"u_span_{role}"), *xy(f"axis_{role}"))
-    motion.row(planar.product, (f"rate_{role}",), "omega2", f"lengthening_{role}")
+    if role in motion.topology.struts:
+        motion.row(planar.identity, (length,), f"{role}_length")
+        motion.row(planar.identity, (lengthening,), f"{role}_length_slope")
+        motion.row(cylinder.direction, axis, *xy(f"span_{role}"), length)
+    else:
+        motion.row(cylinder.span, (length, *axis), *xy(f"span_{role}"))
+        motion.row(planar.difference, xy(f"u_span_{role}"), *motion.motion(Q, "u"), *motion.motion(P, "u"))
+        motion.row(planar.dot, (lengthening,), *xy(f"u_span_{role}"), *axis)
+    motion.row(planar.product, (f"rate_{role}",), "omega2", lengthening)
     motion.quantities += [
         Quantity(length, "m", f"length of the cylinder {role}, from pin {P} to pin {Q}"),
         Quantity(f"rate_{role}", "m/s", f"velocity at which the cylinder {role} lengthens"),

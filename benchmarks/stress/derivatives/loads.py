@@ -141,16 +141,17 @@ def farthest(numbers: Numbers, over: str, role: str) -> Array:
     from benchmarks.stress.derivatives.machine import linkages_of, near_pins
 
     stroke = stroke_of(numbers.scene, over)
+    alone = replace(numbers.scene.unloaded, drive="crank")  # where the slider turns round, its own drive is at rest
     turning = np.stack([np.broadcast_to(np.asarray(angle), numbers.designs) for angle in stroke.turning])
     heights = []
     for angle in np.nan_to_num(turning):
-        cycle = ls.sweep(numbers.scene.unloaded, np.unique(angle), of=[stroke.quantity])[stroke.quantity]
+        cycle = ls.sweep(alone, np.unique(angle), of=[stroke.quantity])[stroke.quantity]
         values = over_designs(cycle, numbers.designs, theta2=len(np.unique(angle)))
         heights.append(values[np.arange(numbers.designs), np.unique(angle, return_inverse=True)[1]])
     best = np.nanargmax(np.where(np.isnan(turning), np.nan, heights), axis=0)
     angle = turning[best, np.arange(numbers.designs)]
-    pins = near_pins(numbers.scene.unloaded, angle)
-    bare = replace(numbers, scene=numbers.scene.unloaded)
+    pins = near_pins(alone, angle)
+    bare = replace(numbers, scene=alone)
 
     def positions(theta2: Array) -> Array:
         linkages = linkages_of(replace(bare, repeated=1), theta2, pins)

@@ -14,6 +14,7 @@ import xarray as xr
 import linksweep as ls
 from benchmarks.stress.decimals import Array
 from benchmarks.stress.derivatives.curves import Wave
+from benchmarks.stress.derivatives.machine import held
 from benchmarks.stress.linkages.scene import scene_of
 from benchmarks.stress.linkages.scenes import drawn
 from benchmarks.stress.linkages.topologies import ALL, AWAY_FROM_TOGGLES
@@ -240,7 +241,8 @@ def over_position(family: Topologies, random: Random, n: int) -> tuple[ls.Scene,
     scene, theta2 = linkages(family, random, n)
     m = Machine(random, n)
     turns = not np.any(ls.check(scene).assembly)  # else some slider is farthest at an end of the motion
-    over = m.choice(*(name for name in scene.mechanism.strokes if turns or not name.endswith("to_end")))
+    moves = (name for name in scene.mechanism.strokes if name.partition(".")[0] not in held(scene.mechanism))
+    over = m.choice(*(name for name in moves if turns or not name.endswith("to_end")))
     stroke, (role, what) = stroke_of(scene, over), over.split(".")
     places = stroke.start + stroke.sense * ls.sweep(scene.unloaded, 90, of=[stroke.quantity])[stroke.quantity]
     low, high = (-170.0, 170.0) if what == "angle" else (float(places.min()), float(places.max()))

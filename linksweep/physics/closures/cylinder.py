@@ -6,7 +6,12 @@ from linksweep.physics.algebra.arithmetic import NOISE, Number, sqrt, where
 def span(rx: Number, ry: Number) -> tuple[Number, Number, Number]:
     """Return L and the direction from P to Q."""
     length = sqrt(rx * rx + ry * ry)
-    return length, rx / length, ry / length
+    return length, *direction(rx, ry, length)
+
+
+def direction(rx: Number, ry: Number, length: Number) -> tuple[Number, Number]:
+    """Return the direction from P to Q."""
+    return rx / length, ry / length
 
 
 def extended_velocity(

@@ -78,16 +78,35 @@ def test_friction_beyond_the_driven_link_is_known_before_its_torque():
     assert abs(ls.sweep(boom("rocker", 0.3), 12, of=["power_residual"]).power_residual).max() < 1e-14
 
 
-@pytest.mark.parametrize("length", [0.3, lambda theta2: 0.3 + 0.01 * np.cos(np.radians(theta2))])
-def test_a_drive_that_loads_a_cylinder_of_given_length(length):
-    """The arm's torque decides the cylinder's force, whose work enters the torque: all agree with the dense system."""
-    machine = ls.Linkage(
+def with_held_cylinder(length) -> ls.Linkage:
+    """Return a rocker and an arm whose ends a cylinder holds at a length."""
+    return ls.Linkage(
         "crank A-B, rod B-C, rocker D-C, held C~K, arm G-K",
         ground={"A": (0.0, 0.0), "D": (0.2, 0.0), "G": (0.5, 0.0)},
         **{role: ls.Bar(value, **BAR) for role, value in PARTS.items()},
         arm=ls.Bar(0.25, **BAR),
         held=ls.Cylinder(length=length),
     )
+
+
+def test_a_held_cylinder_neither_lengthens_nor_extends():
+    """No rounding decides whether a load that acts while it extends is there."""
+    machine = with_held_cylinder(0.3)
+    while_extending = ls.Load("arm", torque=9.0, over="held.length", while_="extending")
+    free, loaded = (ls.Scene(machine, drive="arm", loads=loads, **MOTION) for loads in ([], [while_extending]))
+    cycle, other = (ls.sweep(scene, 36, of=["rate_held", "length_held", "F12", "status"]) for scene in (free, loaded))
+    assert np.all(cycle.status == 0) and np.all(cycle.rate_held == 0.0) and np.all(cycle.length_held == 0.3)
+    np.testing.assert_array_equal(cycle.F12, other.F12)
+    moved = ls.Scene(with_held_cylinder(lambda theta2: 0.3 + 0.01 * np.cos(np.radians(theta2))), **MOTION)
+    rate = ls.sweep(moved, 36, of=["rate_held"]).rate_held
+    expected = -0.01 * np.sin(np.radians(rate.theta2)) * MOTION["omega2"]
+    np.testing.assert_allclose(rate, expected, rtol=1e-11, atol=1e-12)
+
+
+@pytest.mark.parametrize("length", [0.3, lambda theta2: 0.3 + 0.01 * np.cos(np.radians(theta2))])
+def test_a_drive_that_loads_a_cylinder_of_given_length(length):
+    """The arm's torque decides the cylinder's force, whose work enters the torque: all agree with the dense system."""
+    machine = with_held_cylinder(length)
     scene = ls.Scene(machine, drive="arm", **MOTION)
     names = machine.unknowns("arm")
     fast, dense = (ls.sweep(scene, 36, of=[*names, "power_residual"], solver=solver) for solver in ("fast", "dense"))
