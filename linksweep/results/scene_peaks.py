@@ -35,6 +35,7 @@ from linksweep.results.peak_search.between import EVERYWHERE, NEVER
 from linksweep.results.peak_search.exact import exact_peaks, of_designs_that_share, peaks_where, peaks_within
 from linksweep.results.peak_search.friction.jams import may_jam
 from linksweep.results.peak_search.friction.motion import of_free_angles
+from linksweep.results.peak_search.groups import empty
 from linksweep.results.peak_search.limits import assembly_of
 from linksweep.results.peak_search.paths import Part
 from linksweep.results.peak_search.poles import with_dead_centres
@@ -252,7 +253,9 @@ def status_of(scene: Scene, result: Result, threads: int | None) -> xr.Variable:
     order = tuple(sampled.inputs.sizes)
     status = variable(assembly, "1", "", order)
     if not surely_ok(scene):
-        least, worst = _extremes_of_status(scene, sampled, grid, threads)
+        least = worst = variable(empty(scene, ("status",))["status"], "1", "", order)
+        if grid.period == 0.0 or (status.values != PARTIAL).any():  # else no sample changes anything
+            least, worst = _extremes_of_status(scene, sampled, grid, threads)
         closes = (least < CANNOT_ASSEMBLE) | (worst > TOGGLE) | (not by_samples)
         status = xr.where((worst > 0.0) & (status == 0.0), xr.where(closes, float(PARTIAL), NEVER), status)
         # on an arc these samples do not decide: the search along paths has looked at it more closely
