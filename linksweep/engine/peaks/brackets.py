@@ -105,12 +105,14 @@ def insert_trials(a, f_a, b, f_b, c, f_c, x1, x2, x3, f1, f2, f3, first_width, f
 
 
 def insert_point(bracket, x, f):
-    """Return a bracket with another point: as its middle, if it is higher, else as its nearer end."""
+    """Return a bracket with another point: as its middle, if it is higher, else as its nearer end. A middle of unknown
+    value, −∞, becomes no end: the other side may be as high."""
     a, f_a, b, f_b, c, f_c = bracket
     f = (f > -math.inf).where(f, -math.inf)  # where there is no value
-    higher, new = f > f_b, (x, f)
-    before = zip((a, f_a, *new, b, f_b), (*new, b, f_b, c, f_c), strict=True)
-    after = zip((b, f_b, *new, c, f_c), (a, f_a, b, f_b, *new), strict=True)
+    higher, known, new = f > f_b, f_b > -math.inf, (x, f)
+    low, high = ([known.where(*pair) for pair in ((b, end), (f_b, f_end))] for end, f_end in ((a, f_a), (c, f_c)))
+    before = zip((a, f_a, *new, *high), (*new, b, f_b, c, f_c), strict=True)
+    after = zip((*low, *new, c, f_c), (a, f_a, b, f_b, *new), strict=True)
     return tuple(
         (a < x).where((x < b).where(higher.where(*p), (b < x).where((x < c).where(higher.where(*q), old), old)), old)
         for p, q, old in zip(before, after, bracket, strict=True)

@@ -28,18 +28,18 @@ def open_brackets(samples, signal, lane, known, even, tag, brackets, count, best
     for j in range(first, last + 1):
         right = sample_of(samples, j + 1, column)
         stands = left < value and value >= right
-        if j != known and (even or stands):
+        if even or (stands and j != known):
             floor = noise(left, value, right)
             least = top + (RISE * abs(top) if confirmed else 10.0 * floor)
-            summit = stands and might_reach(left, value, right, 1.0) > least
-            between = even and j > first and might_reach_between(before, left, value, right) > least
-            if summit or between:
-                far = j // (2 * half)
-                at = (j + 2 * far) * lanes + lane
-                start, middle, end = (x[at], left), (x[at + lanes], value), (x[at + 2 * lanes], right)
-                if between:
-                    middle, end = (0.5 * (x[at] + x[at + lanes]), -math.inf), middle
+            far = j // (2 * half)
+            at = (j + 2 * far) * lanes + lane
+            start, middle, end = (x[at], left), (x[at + lanes], value), (x[at + 2 * lanes], right)
+            if stands and j != known and might_reach(left, value, right, 1.0) > least:
                 open_bracket(brackets, count, start, middle, end, far, signal, tag, floor)
+                count += 1
+            if even and j > first and might_reach_between(before, left, value, right) > least:
+                unknown = 0.5 * (x[at] + x[at + lanes]), -math.inf
+                open_bracket(brackets, count, start, unknown, middle, far, signal, tag, floor)
                 count += 1
         before, left, value = left, value, right
     return count
@@ -70,12 +70,18 @@ def noise(left, value, right):
 
 
 def might_reach_between(before, left, value, right):
-    """Return the height that a summit between two samples may reach, of four that all rise or all fall: by tangents of
-    the cubic through these, −inf where it does not turn."""
+    """Return the height that a summit between two samples may reach, by tangents of the cubic through four; −inf where
+    it does not turn, or where the secants about the higher sample allow as much."""
     rise, fall = slopes_between(before, left, value, right)
     if left < value:
-        return left + rise if before < left and value < right and fall < 0.0 else -math.inf
-    return value - fall if before > left > value > right and rise > 0.0 else -math.inf
+        outer, beside, top, beyond, from_beside, from_top = before, left, value, right, left + rise, value - fall
+    else:
+        outer, beside, top, beyond, from_beside, from_top = right, value, left, before, value - fall, left + rise
+    if not (outer < beside < top < from_top):
+        return -math.inf
+    if top < beyond:
+        return from_beside
+    return from_top if might_reach(beside, top, beyond, 1.0) < from_top else -math.inf
 
 
 def slopes_between(before, left, value, right):

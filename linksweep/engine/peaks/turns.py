@@ -179,13 +179,16 @@ def summit_of(left, first, second, right, number):
 
 
 def height_between(before, left, value, right):
-    """Return the height that a summit between two samples may reach, of four that all rise or all fall: by tangents of
-    the cubic through these, −inf where it does not turn."""
+    """Return the height that a summit between two samples may reach, by tangents of the cubic through four; −inf where
+    it does not turn, or where the secants about the higher sample allow as much."""
     rise, fall = slopes_between(before, left, value, right)
-    rising, falling = (fall < 0.0).where(left + rise, -math.inf), (rise > 0.0).where(value - fall, -math.inf)
-    height = (left < value).where(rising, falling)
-    for turn in ((left - before) * (value - left), (value - left) * (right - value)):
-        height = (turn > 0.0).where(height, -math.inf)
+    rises, rising, falling = left < value, left + rise, value - fall
+    outer, beside = rises.where(before, right), rises.where(left, value)
+    top, beyond = rises.where(value, left), rises.where(right, before)
+    from_beside, from_top, slopes = rises.where(rising, falling), rises.where(falling, rising), top < beyond
+    height, secants = slopes.where(from_beside, from_top), ((top - beside) + (top - beyond)) + top
+    for sound in (outer < beside, beside < top, top < from_top, slopes.where(-math.inf, secants) < height):
+        height = sound.where(height, -math.inf)
     return height
 
 

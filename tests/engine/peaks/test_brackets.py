@@ -75,6 +75,19 @@ def test_two_equal_peaks_are_found_from_the_dip_between_them(away):
     assert abs(place) == pytest.approx(away, rel=1e-3)
 
 
+@pytest.mark.parametrize("place", [-0.7, -0.1, 0.3, 0.8])
+def test_a_bracket_whose_middle_is_unknown_keeps_both_its_sides(place):
+    """The first trial always exceeds an unknown middle, on whichever side the peak may be."""
+
+    def height(x):
+        return 5.0 - (x - place) ** 2 / (1.0 + 0.3 * x)
+
+    table, best = one((-1.0, height(-1.0), 0.0, -np.inf, 1.0, height(1.0))), np.zeros((b.BEST_ROWS, 1))
+    refine(table, best, height)
+    assert best[b.PEAK, 0] == pytest.approx(5.0, rel=1e-10)
+    assert best[b.PEAK_X, 0] == pytest.approx(place, abs=1e-4)
+
+
 def test_no_trial_lies_so_close_to_the_middle_that_rounding_alone_tells_them_apart():
     """A peak was missed where one fell 7e-7 of the width from the middle: the secant through both allowed no rise."""
     columns = 100_000

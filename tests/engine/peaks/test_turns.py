@@ -78,6 +78,26 @@ def test_a_top_between_two_of_four_samples_that_rise_or_fall_is_noted(top, dip, 
         assert reach in [*state[[turns.REACH, turns.OTHER], 0], -np.inf]
 
 
+@pytest.mark.parametrize(
+    ("samples", "height"),
+    [
+        (
+            (0.0, 12.0, 12.2, 12.19),
+            12.2 + (6.0 * 12.0 - 3.0 * 12.2 - 2.0 * 12.19) / 6.0,
+        ),  # a steep flank before a level one
+        ((0.0, 0.8, 1.0, 0.6), -np.inf),  # nearly a parabola: the secants about the summit allow as much
+    ],
+)
+@pytest.mark.parametrize("turned", [False, True])
+def test_a_top_beside_a_summit_is_noted_where_the_flank_before_it_is_steep(samples, height, turned):
+    """By the tangent of the cubic through the samples, at the summit: it falls there."""
+    samples = samples[::-1] if turned else samples
+    assert might_reach_between(*samples) == pytest.approx(height)
+    table = np.append(samples, 0.0)[:, None]
+    Lanewise(lambda *four: (turns.height_between(*four),), (0, 1, 2, 3), (4,))(table, 1)
+    assert table[4] == might_reach_between(*samples)
+
+
 def four_bars(designs: int) -> ls.Scene:
     random = np.random.default_rng(7)
 
