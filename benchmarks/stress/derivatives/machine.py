@@ -83,12 +83,12 @@ def of_solution(scene: ls.Scene, solution: Solution) -> dict[str, Array]:
     every = {others.get(name, name): values for name, values in named(solution).items()} | _centres(solution)
     if scene.drive == "cylinder":  # whose force is in that of the contact, too
         every = {name: values for name, values in every.items() if name not in ("F43", "F43x", "F43y", "F43t")}
-    still = {f"rate_{role}" for role in held(scene.mechanism)}  # in 50 digits they have a last one
+    still = {f"rate_{role}" for role in held(scene.mechanism)}  # 0; rounding in 50 digits
     return {name: values for name, values in every.items() if name in scene.table.quantity.keys() - GIVEN - still}
 
 
 def held(mechanism: Any) -> frozenset[str]:
-    """Return the cylinders of given length, which is the same at every angle."""
+    """Return the cylinders of given length; in these scenes it is the same at every angle."""
     return mechanism.topology.struts if isinstance(mechanism, ls.Linkage) else frozenset()
 
 

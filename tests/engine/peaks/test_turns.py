@@ -81,10 +81,7 @@ def test_a_top_between_two_of_four_samples_that_rise_or_fall_is_noted(top, dip, 
 @pytest.mark.parametrize(
     ("samples", "height"),
     [
-        (
-            (0.0, 12.0, 12.2, 12.19),
-            12.2 + (6.0 * 12.0 - 3.0 * 12.2 - 2.0 * 12.19) / 6.0,
-        ),  # a steep flank before a level one
+        ((0.0, 12.0, 12.2, 12.19), 12.2 - (2.0 * 12.19 + 3.0 * 12.2 - 6.0 * 12.0) / 6.0),  # steep, then level
         ((0.0, 0.8, 1.0, 0.6), -np.inf),  # nearly a parabola: the secants about the summit allow as much
     ],
 )
