@@ -9,12 +9,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import xarray as xr
+from fused import EVERY
 
 import linksweep as ls
 from linksweep.engine import run
 from linksweep.engine.kernel import reduce, writer
 from linksweep.engine.peaks import laid_out
-from linksweep.engine.trace.operators import OPERATORS
 
 PRESS = ls.example("press")
 OF = ["F32", "T12"]
@@ -25,7 +25,7 @@ def in_python(monkeypatch):
     """Kernels, never numpy, but uncompiled."""
 
     def kernel(source: str, *_):
-        namespace = vars(reduce) | OPERATORS | {"number": np.float64, "math": math}
+        namespace = vars(reduce) | EVERY | {"number": np.float64, "math": math}
         namespace |= {"in_vectors": whole_row, "in_stages": whole_rows, "places": Waiting, "memory": Waiting}
         namespace["vectorised"] = lambda function: function
         exec(source, namespace)

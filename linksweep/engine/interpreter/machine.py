@@ -25,8 +25,8 @@ TILE = 8 * REGISTER
 ABREAST = 2
 """Vectors of a pass through a register: one would wait for its own results, all eight take half as long again to
 compile."""
-OPERATORS = ("+", "-", "*", "/", "<", "negate", "abs", "sqrt", "atan2", "where", *sorted(LOW_WORDS))
-OPERANDS = {"negate": 1, "abs": 1, "sqrt": 1, "where": 3}
+OPERATORS = ("+", "-", "*", "/", "<", "negate", "abs", "sqrt", "atan2", "where", "fma", "fnma", *sorted(LOW_WORDS))
+OPERANDS = {"negate": 1, "abs": 1, "sqrt": 1, "where": 3, "fma": 3, "fnma": 3}
 """Operands of those operations that have not two."""
 CODES = {name: code for code, name in enumerate([*OPERATORS, "load", "store"])}
 COLUMNS = 5

@@ -54,6 +54,7 @@ class Instructions:
             "abs": partial(self._call, "fabs"),
             "sqrt": partial(self._call, "sqrt"),
             "fma": partial(self._call, "fma"),
+            "fnma": lambda x, y, z: self._call("fma", builder.fneg(x), y, z),
             "sum_low": partial(self._sum_low, builder.fadd, builder.fsub),
             "difference_low": partial(self._sum_low, builder.fsub, builder.fadd),
             "ordered_low": lambda x, y, high=None: builder.fsub(y, builder.fsub(high or builder.fadd(x, y), x)),

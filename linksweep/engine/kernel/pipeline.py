@@ -27,6 +27,8 @@ CYCLES: Mapping[str, Mapping[str, int]] = {
     "abs": {},
     "where": {},
     "*": {MULTIPLIER: 1},
+    "fma": {MULTIPLIER: 1},
+    "fnma": {MULTIPLIER: 1},
     "product_low": {MULTIPLIER: 1},
     "/": {MULTIPLIER: 3, DIVIDER: 9},
     "sqrt": {MULTIPLIER: 2, DIVIDER: 16},

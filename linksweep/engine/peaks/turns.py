@@ -16,6 +16,8 @@ from linksweep.engine.peaks.brackets import BEYOND, EVALUATIONS, NOISE, PEAK, PE
 from linksweep.engine.peaks.lanewise import around, copy_lanes, lanewise
 from linksweep.engine.peaks.samples import GRADES, HALF, SAMPLES
 from linksweep.engine.peaks.summits import open_brackets, slopes_between
+from linksweep.engine.trace.arctangent import arctangent
+from linksweep.engine.trace.graph import Node
 
 PEAK_ANGLE = PEAK_X
 """Row of `best` that has angles from the near-toggle [degree], in place of tangents, once a search of turns is done."""
@@ -309,6 +311,7 @@ def settle_peaks(
 @lanewise((PEAK, PEAK_X, PEAK_FAR, EVALUATIONS), (PEAK_ANGLE, EVALUATIONS))
 def place_angles(peak, tangent, far, trials):
     """Replace the tangents of peaks by their angles from the near-toggle, from 0 to 360, and count the samples."""
-    angle = math.degrees(2.0) * tangent.atan2(1.0) + 180.0 * far
+    half_angle = arctangent(tangent, tangent.graph.constant(1.0), Node.where)
+    angle = math.degrees(2.0) * half_angle + 180.0 * far
     angle = (angle < 0.0).where(angle + 360.0, angle)
     return (-math.inf < peak).where(angle, math.nan), trials + SAMPLES

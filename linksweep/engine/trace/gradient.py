@@ -37,6 +37,7 @@ PASSED_ON: dict[str, Callable[..., tuple[Node, ...]]] = {
     "/": lambda z, w, x, y: _opposed(_divided(w, z, x, y), 1.0, z),
     "sqrt": lambda z, w, x: (0.5 * w / z,),
     "negate": lambda z, w, x: (-w,),
+    "rounded": lambda z, w, x: (w,),
     "abs": lambda z, w, x: ((x < 0.0).where(-w, w),),
     "atan2": lambda z, w, y, x: _opposed(w / (x * x + y * y), x, y),
 }
@@ -80,7 +81,7 @@ def _is_low(z: Node, low: Collection[Node]) -> bool:
         return z.operands[0] in low or z.operands[1] in low
     if z.operator == "/":
         return z.operands[0] in low
-    return z.operator in ("+", "-", "negate") and all(x in low for x in z.operands)
+    return z.operator in ("+", "-", "negate", "rounded") and all(x in low for x in z.operands)
 
 
 def _passed_on(z: Node, mask: Mask, w: Node) -> list[tuple[Node, Mask, Node]]:
@@ -95,8 +96,8 @@ def _passed_on(z: Node, mask: Mask, w: Node) -> list[tuple[Node, Mask, Node]]:
 
 def _divided(w: Node, z: Node, x: Node, y: Node) -> Node:
     """Return w/y, of an adjoint w and a quotient z = x/y, without a division per sample where that can be: by z/x where
-    x is a constant, and by 1/y where that is known for several samples of w."""
-    if x.operator == "constant":
+    x is a constant but 0, and by 1/y where that is known for several samples of w."""
+    if x.operator == "constant" and x.value:
         return w * (z * (1.0 / x.value))
     return w * (1.0 / y) if y.dims < w.dims else w / y
 

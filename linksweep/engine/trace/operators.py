@@ -11,7 +11,9 @@ import numpy as np
 
 from linksweep.base import low_words
 from linksweep.engine.trace.arctangent import arctangent
-from linksweep.engine.trace.graph import LOW_WORDS, Graph, Node
+from linksweep.engine.trace.contraction import contracted
+from linksweep.engine.trace.graph import LOW_WORDS, Graph, Node, leading_to
+from linksweep.engine.trace.simplified import Simplified
 
 OPERATORS: Mapping[str, Callable[..., Any]] = {
     "+": operator.add,
@@ -22,11 +24,11 @@ OPERATORS: Mapping[str, Callable[..., Any]] = {
     "negate": operator.neg,
     "abs": operator.abs,
     "sqrt": np.sqrt,
-    "atan2": lambda y, x: arctangent(y, x, np.where),
     "where": np.where,
     **{name: getattr(low_words, name) for name in LOW_WORDS},
 }
-"""Operations on arrays; on numpy scalars, Python's own operators give numpy's results, and much faster."""
+"""Operations on arrays, but fma and what is made of it, which numpy lacks; on numpy scalars, Python's own operators give
+numpy's results, and much faster."""
 
 
 def interpret(nodes: Iterable[Node], values: dict[Node, Any], operators=OPERATORS) -> dict[Node, Any]:
@@ -50,13 +52,19 @@ class Traced(NamedTuple):
 
 def traced(function: Callable[..., Iterable[Node | float]], count: int) -> Traced:
     """Trace a function of so many numbers."""
-    graph = Graph()
-    inputs = [graph.input(f"input {k}", ()) for k in range(count)]
-    results = [graph.node(result) for result in function(*inputs)]
-    return Traced(inputs, graph.nodes[count:], results)
+    return _traced(Simplified(), function, count)
 
 
 @cache
 def traced_arctangent() -> Traced:
-    """Return the arctangent of y and x as traced operations."""
-    return traced(lambda y, x: [arctangent(y, x, Node.where)], 2)
+    """Return the arctangent of y and x as traced operations, contracted."""
+    written = _traced(Graph(), lambda y, x: [arctangent(y, x, Node.where)], 2)
+    values = contracted((*written.inputs, *written.results)).values
+    inputs, results = ([values[node] for node in nodes] for nodes in (written.inputs, written.results))
+    return Traced(inputs, [node for node in leading_to(results) if node not in inputs], results)
+
+
+def _traced(graph: Graph, function: Callable[..., Iterable[Node | float]], count: int) -> Traced:
+    inputs = [graph.input(f"input {k}", ()) for k in range(count)]
+    results = [graph.node(result) for result in function(*inputs)]
+    return Traced(inputs, graph.nodes[count:], results)

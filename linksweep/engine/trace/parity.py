@@ -21,6 +21,8 @@ def parities(nodes: Iterable[Node], of_inputs: Mapping[Node, int]) -> dict[Node,
             parity[node] = of_inputs.get(node, 1)
         elif node.operator in ("*", "/", "product_low"):
             parity[node] = x[0] * x[1]
+        elif node.operator in ("fma", "fnma"):
+            parity[node] = x[2] if x[0] * x[1] == x[2] else 0
         elif node.operator == "negate" or (node.operator in SUMS and x[0] == x[1]):
             parity[node] = x[0]
         elif node.operator == "where" and x[0] == 1 and x[1] == x[2]:

@@ -12,9 +12,10 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
 from linksweep.engine.quantity import Row, Table, Total
-from linksweep.engine.trace.arctangent import arctangent
+from linksweep.engine.trace.contraction import contracted
 from linksweep.engine.trace.graph import Graph, Node, in_order, leading_to
 from linksweep.engine.trace.operators import traced_arctangent
+from linksweep.engine.trace.simplified import Simplified
 
 INSTRUCTIONS = {"sum_low": 5, "difference_low": 5, "ordered_low": 2}
 """Instructions of operations that take more than one, besides the sum itself."""
@@ -87,19 +88,25 @@ class Plan:
 
     def with_arctangents_expanded(self) -> Plan:
         """Return the plan with the operations of each arctangent in its place."""
-        graph, copies = Graph(), dict[Node, Node]()
+        graph, copies = Simplified(), dict[Node, Node]()
         for node in self.nodes:
             operands = tuple(copies[x] for x in node.operands)
-            if node.operator == "atan2":
-                y, x = operands
-                copies[node] = arctangent(y, x, Node.where)
-            else:
-                copies[node] = graph.copy(node, operands)
+            copies[node] = _arctangent(*operands) if node.operator == "atan2" else graph.copy(node, operands)
         return Plan(self.index, {name: copies[node] for name, node in self.outputs.items()}, self.functions)
 
     def dims(self, node: Node) -> tuple[str, ...]:
         """Return a node's dims in the order of its results: loops outermost first, the index last."""
         return tuple(dim for dim in (*self.loops, self.index) if dim in node.dims)
+
+
+def _arctangent(y: Node, x: Node) -> Node:
+    """Return an arctangent by its operations."""
+    (inputs, nodes, (angle,)), graph = traced_arctangent(), y.graph
+    copies = dict(zip(inputs, (y, x), strict=True))
+    for node in nodes:
+        operands = (copies[operand] for operand in node.operands)
+        copies[node] = graph.operation(node.operator, *operands) if node.operands else graph.copy(node, ())
+    return copies[angle]
 
 
 @lru_cache(maxsize=256)
@@ -125,8 +132,9 @@ def plan(table: Table, request: tuple[str, ...], inputs: InputForms) -> Plan:
     made_by: dict[str, range] = {}
     for name in request:
         _trace(name, table, graph, values, made_by)
-    outputs = {name: values[name] for name in request}
-    alive = {node.position for node in leading_to(outputs.values())}
+    done = contracted([values[name] for name in request])
+    outputs = {name: done.values[values[name]] for name in request}
+    alive = {done.made[node].position for node in leading_to(outputs.values())}
     functions = tuple(name for name, made in made_by.items() if not alive.isdisjoint(made))
     return Plan(table.index, outputs, functions)
 
@@ -149,7 +157,7 @@ def _trace(name: str, table: Table, graph: Graph, values: dict[str, Node], made_
         before = len(graph.nodes)
         made = row.function(*(values[x] if isinstance(x, str) else graph.node(x) for x in row.wiring))
         made = made if isinstance(made, tuple) else (made,)
-        values.update(zip(row.outputs, map(graph.node, made), strict=True))
+        values.update((output, graph.node(x).rounded()) for output, x in zip(row.outputs, made, strict=True))
         _mark_low_words(graph, {output: values[output] for output in row.outputs})
         made_by[f"{row.function.__name__} → {', '.join(row.outputs)}"] = range(before, len(graph.nodes))
 

@@ -38,8 +38,6 @@ def relative_bound(
     cosine, relative to the number that `certain` has for each, in addition.
     """
     known = {node: INPUT * abs(node) + PAIR * unit for node, unit in certain.items()}
-    # tracing replaces −(−x) by x, so the operand of a negated node needs the bound, too
-    known |= {node.operands[0]: error for node, error in known.items() if node.operator == "negate"}
     largest_error, largest = _zero(results[0]), _zero(results[0])
     for result in results:
         error, size = _bound(result, known, exact), abs(result)
@@ -71,7 +69,7 @@ def _propagated(z: Node, errors: list[Node], exact: Callable[[str], bool]) -> No
         return zero if exact(z.value) else INPUT * abs(z)
     if z.operator in LOW_WORDS:
         return abs(z)
-    if z.operator in ("negate", "abs"):
+    if z.operator in ("negate", "abs", "rounded"):
         return errors[0]
     if z.operator == "where":
         return z.operands[0].where(errors[1], errors[2])

@@ -14,10 +14,11 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable
-from functools import lru_cache
+from functools import lru_cache, partial
 
-from linksweep.engine.trace.graph import Graph, Node
+from linksweep.engine.trace.graph import Node
 from linksweep.engine.trace.plan import Plan
+from linksweep.engine.trace.simplified import Simplified
 
 Weight = frozenset[tuple[Node, int]]
 """A product of powers of numbers that depend on no angle."""
@@ -48,7 +49,7 @@ class _Superposition:
     """A plan traced again, with every value that depends on one dim as a sum of cycles."""
 
     def __init__(self, plan: Plan, dim: str) -> None:
-        self.plan, self.dim, self.graph = plan, dim, Graph()
+        self.plan, self.dim, self.graph = plan, dim, Simplified()
         self.sums: dict[Node, Sum] = {}
 
     def result(self) -> Plan:
@@ -98,6 +99,11 @@ def _added(x: Sum, y: Sum) -> Sum:
     return total
 
 
+def _with_product(x: Sum, y: Sum, z: Sum, minus: bool = False) -> Sum | None:
+    product = _multiplied(x, y)
+    return product and _added(z, _opposite(product) if minus else product)
+
+
 def _opposite(x: Sum) -> Sum:
     return {weight: -cycle for weight, cycle in x.items()}
 
@@ -132,5 +138,7 @@ _LINEAR: dict[str, Callable[..., Sum | None]] = {
     "-": lambda x, y: _added(x, _opposite(y)),
     "negate": _opposite,
     "*": _multiplied,
+    "fma": _with_product,
+    "fnma": partial(_with_product, minus=True),
     "/": _divided,
 }

@@ -46,6 +46,11 @@ def marked_low(x: Number) -> Number:
     return x.marked_low() if hasattr(x, "marked_low") else x
 
 
+def rounded(x: Number) -> Number:
+    """Return x, of which a sum in a trace takes the rounded value: else it would take a product's exact one."""
+    return x.rounded() if hasattr(x, "rounded") else x
+
+
 def where(condition: Number, x: Number, y: Number) -> Number:
     """Return `x` where the condition holds, else `y`; both are evaluated."""
     return (x if condition else y) if isinstance(condition, bool) else condition.where(x, y)

@@ -5,7 +5,7 @@ contracted or reordered (Knuth, TAOCP 2, 4.2.2). Where high words cancel in a di
 remaining digits.
 """
 
-from linksweep.physics.algebra.arithmetic import Number, marked_low, ordered_low, product_low, sum_low
+from linksweep.physics.algebra.arithmetic import Number, marked_low, ordered_low, product_low, rounded, sum_low
 
 Pair = tuple[Number, Number]
 """A double-double (high, low); high is the sum rounded to a float."""
@@ -13,17 +13,17 @@ Pair = tuple[Number, Number]
 
 def two_sum(x: Number, y: Number) -> Pair:
     """Return x + y exactly."""
-    return x + y, sum_low(x, y)
+    return rounded(x) + rounded(y), sum_low(x, y)
 
 
 def ordered_sum(x: Number, y: Number) -> Pair:
     """Return x + y exactly, where |x| ≥ |y| or x = 0."""
-    return x + y, ordered_low(x, y)
+    return rounded(x) + rounded(y), ordered_low(x, y)
 
 
 def two_product(x: Number, y: Number) -> Pair:
     """Return x·y exactly."""
-    return x * y, product_low(x, y)
+    return rounded(x * y), product_low(x, y)
 
 
 def add(p: Pair, q: Pair) -> Pair:

@@ -10,7 +10,7 @@ import math
 
 from linksweep.physics.algebra.arctangent import arctangent, small_angle
 from linksweep.physics.algebra.arithmetic import Number, where
-from linksweep.physics.algebra.double_double import add, cross, divide, dot, two_product
+from linksweep.physics.algebra.double_double import add, cross, divide, dot, ordered_sum, two_product
 
 ANGLE_NOISE = 8.0 * 2.0**-52
 """[rad] Bound on the rounding error of an angle within the first turn."""
@@ -41,8 +41,7 @@ def angle_from_tangent(half_tangent: Number, far_half: Number) -> tuple[Number, 
     inverse = 1.0 / (1.0 + half_tangent * half_tangent)
     sin = 2.0 * half_tangent * inverse
     versine = half_tangent * sin
-    cos = 1.0 - versine
-    cos_lo, far = (1.0 - cos) - versine, far_half > 0.0
+    (cos, cos_lo), far = ordered_sum(1.0, -versine), far_half > 0.0
     return where(far, -cos, cos), where(far, -cos_lo, cos_lo), where(far, -sin, sin)
 
 

@@ -9,15 +9,16 @@ import oracle_inverted_slider_crank as inverted
 import oracle_slider_crank as slider
 import pytest
 import xarray as xr
+from fused import EVERY
 from long import long_but
 from references import mp
 from scipy.optimize import brentq
 from shifted import derivative, shifted, step_of
 
 import linksweep as ls
-from linksweep.engine.trace.gradient import gradient
+from linksweep.engine.trace.derivatives import derivative_of, with_derivatives
 from linksweep.engine.trace.graph import LOW_WORDS
-from linksweep.engine.trace.operators import OPERATORS, interpret
+from linksweep.engine.trace.operators import interpret
 from linksweep.engine.trace.plan import Plan, plan
 from linksweep.scene.examples import names as examples
 from linksweep.scene.parameters import free, replaced
@@ -34,6 +35,8 @@ MP = {
     "sqrt": mp.sqrt,
     "atan2": mp.atan2,
     "where": lambda c, x, y: x if c else y,
+    "fma": lambda x, y, z: z + x * y,
+    "fnma": lambda x, y, z: z - x * y,
     **dict.fromkeys(LOW_WORDS, lambda x, y: mp.mpf(0)),
 }
 
@@ -119,15 +122,19 @@ def test_gradients_of_the_traced_operations_are_those_of_60_digits(name):
     words = ("branch", "cos", "sin", "_lo", "_distance")
     paired = {own.removesuffix("_lo") for own in numbers if own.endswith("_lo")}
     active = [node for own, node in nodes.items() if not any(word in own for word in words) and own not in paired]
+    slopes = tuple((node.value, ((node.value, 1.0),)) for node in active)
+    table = with_derivatives(scene.table, of, slopes)
     for quantity in of:
         value = request.outputs[quantity]
-        slopes = gradient(value, active)
         at = {node: np.float64(numbers[own]) for own, node in nodes.items()}
-        ours = interpret(Plan("", {n.value: slope for n, slope in slopes.items()}, ()).nodes, dict(at), OPERATORS)
-        expected = {node: in_60_digits(value, at, node) for node in slopes}
-        largest = max(abs(expected[node] * (at[node] or 1.0)) for node in slopes)
-        for node, slope in slopes.items():
-            error = abs(float(ours[slope]) - expected[node]) * abs(at[node] or 1.0)
+        names = {node: derivative_of(quantity, node.value) for node in active}
+        derivatives = plan(table, tuple(names.values()), (*forms, *((row, (grid.dim,)) for row in rows)))
+        own = interpret(derivatives.nodes, {x: np.float64(numbers[x.value]) for x in derivatives.input_nodes}, EVERY)
+        ours = {node: float(own[derivatives.outputs[name]]) for node, name in names.items()}
+        expected = {node: in_60_digits(value, at, node) for node in active}
+        largest = max(abs(expected[node] * (at[node] or 1.0)) for node in active)
+        for node in active:
+            error = abs(ours[node] - expected[node]) * abs(at[node] or 1.0)
             assert error <= 1e-12 * largest, (name, quantity, node.value)
 
 

@@ -91,8 +91,9 @@ def test_peaks_are_of_the_same_quantities_by_default(scenes):
 
 
 def test_a_drive_that_loads_a_slide_without_friction():
-    """Friction that the drive itself decides is refused; without friction nothing of the drive comes back to it."""
-    assert differences(*inverted("rocker", 0.0)) == {}
+    """Friction that the drive itself decides is refused; without friction nothing of the drive comes back to it. The
+    named machine's formula has no friction in it, so last digits may differ."""
+    assert max(differences(*inverted("rocker", 0.0)).values()) < 1e-15
 
 
 @pytest.mark.parametrize("friction", [0.0, 0.2])

@@ -1,0 +1,60 @@
+"""Contract sums: z + x·y, where the product is written in the sum, becomes one operation, rounded once.
+
+    fma    z + x·y          fnma    z − x·y
+
+Of two products the second one is taken into the sum. The difference of a product and itself is 0 and stays so.
+
+This rule sees a sum as it is written and its operands, nothing else. Which of them are 0 or 1, and so are left out, is
+found after it: hence a design has the same operations, and bits, alone and among others, and a quantity in any request.
+A value that a row of the table has given a name is a number of its own, and so are the words of double-doubles
+(`Node.rounded`): no sum takes such a product.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import NamedTuple
+
+from linksweep.engine.trace.graph import Node, leading_to
+from linksweep.engine.trace.simplified import Simplified
+
+
+class Contracted(NamedTuple):
+    """A graph that is contracted and simplified: its `values` by written nodes, and of each of its nodes the written
+    one that `made` it."""
+
+    values: dict[Node, Node]
+    made: dict[Node, Node]
+
+
+def contracted(results: Iterable[Node]) -> Contracted:
+    """Contract and simplify the graph of what these results are written with."""
+    graph, values, made = Simplified(), dict[Node, Node](), dict[Node, Node]()
+    for node in leading_to(results):
+        before = len(graph.nodes)
+        values[node] = _value(graph, node, values) if node.operands else graph.copy(node, ())
+        made |= dict.fromkeys(graph.nodes[before:], node)
+    return Contracted(values, made)
+
+
+def _value(graph: Simplified, node: Node, values: dict[Node, Node]) -> Node:
+    """Return the value of a written operation, from those of its operands."""
+    operands = [values[x] for x in node.operands]
+    if node.operator in ("+", "-"):
+        (x, x_minus), (y, y_minus) = map(_unsigned, node.operands)
+        before, after = operands
+        if node.operator == "-":
+            after, y_minus = -after, not y_minus
+        for product, minus, other in ((y, y_minus, before), (x, x_minus, after)):
+            if product.operator == "*" and x is not y:
+                factors = (values[factor] for factor in product.operands)
+                return graph.apply("fnma" if minus else "fma", *factors, other)
+    return graph.apply(node.operator, *operands)
+
+
+def _unsigned(node: Node) -> tuple[Node, bool]:
+    """Return a node without its sign, and whether that is a minus."""
+    minus = False
+    while node.operator == "negate":
+        (node,), minus = node.operands, not minus
+    return node, minus

@@ -1,0 +1,141 @@
+"""Leave out trivial operations: 0·x, 0 + x, 1·x, −(−x), and choices that are known while tracing.
+
+That changes no bit of any result. Signs are moved outward until a sum absorbs them: rounding is symmetric.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from linksweep.engine.trace.graph import Graph, Node
+
+KNOWN: Mapping[str, Callable[..., float]] = {"<": lambda x, y: float(x < y), "abs": abs}
+"""Operations that are computed where their operands are constants."""
+
+
+class Simplified(Graph):
+    """Graph without trivial operations."""
+
+    def apply(self, operator: str, *operands: Node) -> Node:
+        if operator in KNOWN and all(x.operator == "constant" for x in operands):
+            return self.constant(KNOWN[operator](*(x.value for x in operands)))
+        rule = RULES.get(operator)
+        return rule(self, *operands) if rule else self.operation(operator, *operands)
+
+    def add(self, x: Node, y: Node) -> Node:
+        if x.is_constant(0.0):
+            return y
+        if y.is_constant(0.0):
+            return x
+        if y.operator == "negate":
+            return self.subtract(x, y.operands[0])
+        if x.operator == "negate":
+            return self.subtract(y, x.operands[0])
+        return self.operation("+", x, y)
+
+    def subtract(self, x: Node, y: Node) -> Node:
+        if y.is_constant(0.0):
+            return x
+        if x.is_constant(0.0):
+            return self.negate(y)
+        if y.operator == "negate":
+            return self.add(x, y.operands[0])
+        if x.operator == "negate":
+            return self.negate(self.add(x.operands[0], y))
+        return self.operation("-", x, y)
+
+    def multiply(self, x: Node, y: Node) -> Node:
+        if x.is_constant(0.0) or y.is_constant(0.0):
+            return self.constant(0.0)
+        if x.is_constant(1.0):
+            return y
+        if y.is_constant(1.0):
+            return x
+        if x.operator == "negate":
+            return self.negate(self.multiply(x.operands[0], y))
+        if y.operator == "negate":
+            return self.negate(self.multiply(x, y.operands[0]))
+        return self.operation("*", x, y)
+
+    def add_product(self, x: Node, y: Node, z: Node, minus: bool = False) -> Node:
+        """Return z + x·y, or z − x·y, rounded once."""
+        if x.is_constant(0.0) or y.is_constant(0.0):
+            return z
+        if z.is_constant(0.0):
+            product = self.multiply(x, y)
+            return self.negate(product) if minus else product
+        for factor, other in ((x, y), (y, x)):
+            if factor.is_constant(1.0):
+                return self.subtract(z, other) if minus else self.add(z, other)
+            if factor.operator == "negate":
+                return self.add_product(factor.operands[0], other, z, not minus)
+        if z.operator == "negate":
+            return self.negate(self.add_product(x, y, z.operands[0], not minus))
+        return self.operation("fnma" if minus else "fma", x, y, z)
+
+    def subtract_product(self, x: Node, y: Node, z: Node) -> Node:
+        return self.add_product(x, y, z, minus=True)
+
+    def divide(self, x: Node, y: Node) -> Node:
+        if x.is_constant(0.0) or y.is_constant(1.0):
+            return x
+        if x.operator == "negate":
+            return self.negate(self.divide(x.operands[0], y))
+        return self.operation("/", x, y)
+
+    def negate(self, x: Node) -> Node:
+        if x.operator == "constant":
+            return self.constant(-x.value if x.value else 0.0)
+        if x.operator == "negate":
+            return x.operands[0]
+        return self.operation("negate", x)
+
+    def choose(self, condition: Node, x: Node, y: Node) -> Node:
+        if condition.operator == "constant":
+            return x if condition.value else y
+        return x if x is y else self.operation("where", condition, x, y)
+
+    def sum_low(self, x: Node, y: Node) -> Node:
+        """Return what the rounded sum misses of x + y."""
+        if x.is_constant(0.0) or y.is_constant(0.0):
+            return self.constant(0.0)
+        if x.operator == "negate" == y.operator:
+            return self.negate(self.sum_low(x.operands[0], y.operands[0]))
+        if y.operator == "negate":
+            return self.operation("difference_low", x, y.operands[0])
+        if x.operator == "negate":
+            return self.operation("difference_low", y, x.operands[0])
+        return self.operation("sum_low", x, y)
+
+    def ordered_low(self, x: Node, y: Node) -> Node:
+        """Return what the rounded sum misses of x + y, where |x| ≥ |y| or x = 0."""
+        if x.is_constant(0.0) or y.is_constant(0.0):
+            return self.constant(0.0)
+        return self.operation("ordered_low", x, y)
+
+    def product_low(self, x: Node, y: Node) -> Node:
+        """Return what the rounded product misses of x·y."""
+        if any(z.is_constant(value) for z in (x, y) for value in (0.0, 1.0)):
+            return self.constant(0.0)
+        if x.operator == "negate":
+            return self.negate(self.product_low(x.operands[0], y))
+        if y.operator == "negate":
+            return self.negate(self.product_low(x, y.operands[0]))
+        return self.operation("product_low", x, y)
+
+
+RULES: Mapping[str, Callable[..., Node]] = {
+    "+": Simplified.add,
+    "-": Simplified.subtract,
+    "*": Simplified.multiply,
+    "/": Simplified.divide,
+    "fma": Simplified.add_product,
+    "fnma": Simplified.subtract_product,
+    "negate": Simplified.negate,
+    "where": Simplified.choose,
+    "rounded": lambda graph, x: x,
+    "sum_low": Simplified.sum_low,
+    "ordered_low": Simplified.ordered_low,
+    "product_low": Simplified.product_low,
+}
+"""Ways to the values of operations."""

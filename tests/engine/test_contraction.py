@@ -1,0 +1,123 @@
+"""A product written in a sum is rounded with it, once, by a rule that sees what is written and nothing else."""
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from fused import EVERY
+
+from linksweep.engine.quantity import Row, Table
+from linksweep.engine.trace.contraction import contracted
+from linksweep.engine.trace.graph import Graph, leading_to
+from linksweep.engine.trace.operators import interpret
+from linksweep.engine.trace.plan import plan
+from linksweep.physics.algebra import double_double
+
+NAMES = ("a", "b", "c", "d")
+SUMS = {
+    "a·b + c": lambda a, b, c, d: a * b + c,
+    "c + a·b": lambda a, b, c, d: c + a * b,
+    "a·b − c": lambda a, b, c, d: a * b - c,
+    "c − a·b": lambda a, b, c, d: c - a * b,
+    "−a·b + c": lambda a, b, c, d: -a * b + c,
+    "−(a·b) − c": lambda a, b, c, d: -(a * b) - c,
+    "c − a·(−b)": lambda a, b, c, d: c - a * -b,
+    "−c − a·b": lambda a, b, c, d: -c - a * b,
+}
+
+
+def numbers(seed: int, count: int = len(NAMES)) -> list[float]:
+    return np.random.default_rng(seed).normal(size=count).tolist()
+
+
+def evaluated(function, values: dict[str, float], known=()) -> float:
+    """Return a function's value by its operations; `known` names the numbers that are constants of the trace."""
+    graph = Graph()
+    nodes = [graph.constant(x) if name in known else graph.input(name, ()) for name, x in values.items()]
+    result = graph.node(function(*nodes))
+    value = contracted([result]).values[result]
+    needed = leading_to([value])
+    given = {node: np.float64(values[node.value]) for node in needed if node.operator == "input"}
+    return float(interpret(needed, given, EVERY)[value])
+
+
+def operators(function) -> set[str]:
+    """Return the operators of the operations that a function comes to."""
+    result = function(*map(Graph().input, NAMES, [()] * len(NAMES)))
+    return {node.operator for node in leading_to([contracted([result]).values[result]]) if node.operands}
+
+
+@pytest.mark.parametrize("name", SUMS)
+def test_a_sum_with_a_product_is_rounded_once(name):
+    for seed in range(50):
+        a, b, c, d = numbers(seed)
+        exact = SUMS[name](*map(Fraction, (a, b, c, d)))
+        assert evaluated(SUMS[name], {"a": a, "b": b, "c": c, "d": d}) == float(exact)
+    assert operators(SUMS[name]) - {"negate"} in ({"fma"}, {"fnma"})
+
+
+def test_of_two_products_the_second_is_taken_into_the_sum():
+    for seed in range(50):
+        a, b, c, d = numbers(seed)
+        expected = float(Fraction(a * b) - Fraction(c) * Fraction(d))
+        assert evaluated(lambda a, b, c, d: a * b - c * d, {"a": a, "b": b, "c": c, "d": d}) == expected
+
+
+def test_the_difference_of_a_product_and_itself_is_zero():
+    for seed in range(50):
+        a, b, c, d = numbers(seed)
+        for function in (lambda a, b, c, d: a * b - a * b, lambda a, b, c, d: a * b - b * a):
+            assert evaluated(function, {"a": a, "b": b, "c": c, "d": d}) == 0.0
+
+
+def test_words_of_double_doubles_remain_exact():
+    """Where high words are rounded sums and products, both words add up to the exact result."""
+
+    def product_and_sum(a, b, c, d):
+        high, low = double_double.two_product(a, b)
+        total, missed = double_double.two_sum(c * d, high)
+        return total, missed, low
+
+    for seed in range(50):
+        a, b, c, d = numbers(seed)
+        values = dict(zip(NAMES, (a, b, c, d), strict=True))
+        words = [evaluated(lambda *x, k=k: product_and_sum(*x)[k], values) for k in range(3)]
+        assert sum(map(Fraction, words)) == Fraction(a) * Fraction(b) + Fraction(c * d)
+        assert evaluated(lambda *x: x[2] - double_double.two_product(*x[:2])[0], values) == c - a * b
+
+
+def test_a_named_value_is_a_number_of_its_own():
+    """Whichever rows take it, and whether it is asked for or not."""
+    rows = (
+        Row(lambda a, b: a * b, ("product",)),
+        Row(lambda product: -product, ("opposite",)),
+        Row(lambda product, c: product + c, ("total",)),
+        Row(lambda opposite, c: opposite + c, ("difference",)),
+    )
+    for name in ("total", "difference"):
+        request = plan(Table("theta2", rows), (name,), tuple((name, ()) for name in NAMES))
+        assert {node.operator for node in request.nodes if node.operands} == {"*", "+" if name == "total" else "-"}
+
+
+def drawn_function(draw: np.random.Generator, operations: int = 25):
+    """Return a function of random sums, products and signs."""
+    steps = [(draw.choice(["+", "-", "*", "*", "negate"]), *draw.integers(0, 6 + k, 2)) for k in range(operations)]
+
+    def function(*numbers):
+        values = list(numbers)
+        for operator, i, j in steps:
+            x, y = values[i], values[j]
+            values.append({"+": x + y, "-": x - y, "*": x * y, "negate": -x}[operator])
+        return values[-1]
+
+    return function
+
+
+@pytest.mark.parametrize("seed", range(300))
+def test_numbers_that_are_known_to_be_0_or_1_change_no_bit(seed):
+    """A design alone, whose zeros and ones are left out, has the bits that it has among others."""
+    draw = np.random.default_rng(seed)
+    function, values = drawn_function(draw), {f"x{k}": x for k, x in enumerate(draw.normal(size=6))}
+    known = [f"x{k}" for k in range(6) if draw.random() < 0.5]
+    values |= {name: float(draw.integers(2)) for name in known}
+    assert evaluated(function, values, known) == evaluated(function, values)
