@@ -17,8 +17,6 @@ from benchmarks.speed.kernel import kernel_of, way
 from benchmarks.timing import SHARE, Race, Row, race
 
 KERNEL, C, WIDE = "kernel alone, AVX2", "limit.c, AVX2", "limit.c, AVX2, vectors by hand"
-ROUNDED = "limit.c, AVX2, products rounded"
-"""As linksweep computes, whose bits no processor changes: no product and sum in one operation."""
 
 
 def rows(size: Size) -> list[Row]:
@@ -33,7 +31,7 @@ def rows(size: Size) -> list[Row]:
     settings = {"NUMBA_CPU_NAME": binding.get_host_cpu_name(), "NUMBA_CPU_FEATURES": left}
     output = json.loads(fresh.python("-m", __name__, "quick" if size is QUICK else "full", settings=settings))
     timed = Race(output["seconds"], size.angles)
-    rivals = {C: 1.05, WIDE: 1.1, ROUNDED: None}
+    rivals = {C: 1.05, WIDE: 1.1}
     return [timed.row(SHARE, KERNEL, rival, goal, error=output["error"]) for rival, goal in rivals.items()]
 
 
@@ -42,11 +40,9 @@ def measure(size: Size) -> None:
     theta2 = peers.grid(size.angles)
     sweep = partial(ls.sweep, scene(GENERAL), size.angles, of=NINE, threads=1)
     calls = {KERNEL: kernel_of(sweep).call}
-    for name, flags in {C: (), ROUNDED: ("-ffp-contract=off",)}.items():
-        if lib := limit.build(flags=(*limit.FLAGS, *limit.NO_AVX512, *flags)):
-            calls[name] = limit.bind_store(lib, GENERAL, theta2)[0]
-    if lib := limit.build(flags=(*limit.SCHEDULED, *limit.NO_AVX512)):
-        calls[WIDE] = limit.bind_store(lib, GENERAL, theta2, "store_wide")[0]
+    for name, flags, function in ((C, limit.FLAGS, "store"), (WIDE, limit.SCHEDULED, "store_wide")):
+        if lib := limit.build(flags=(*flags, *limit.NO_AVX512)):
+            calls[name] = limit.bind_store(lib, GENERAL, theta2, function)[0]
     with way("compiled"):
         error = peers.difference(stacked(sweep()), peers.numpy_lapack(GENERAL, theta2))
     print(json.dumps({"seconds": race(calls, size).seconds, "error": error}))

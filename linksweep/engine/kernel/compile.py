@@ -23,8 +23,8 @@ from linksweep.engine.kernel import vectors
 from linksweep.engine.kernel.machine_code import INTEGER, MachineCode, without_collecting
 
 SETTINGS: dict[str, Any] = {"error_model": "numpy", "nogil": True, "_nrt": False}
-"""IEEE division, no GIL, and no fast-math at all: contracted or reordered sums would change bits. Kernels allocate no
-arrays, so numba's reference counting (`_nrt`) is off."""
+"""IEEE division, no GIL, and no fast-math at all: sums that LLVM contracts or reorders would change bits. Kernels
+allocate no arrays, so numba's reference counting (`_nrt`) is off."""
 
 PLACES, FLOATS = "i8*", "f8*"
 KINDS = (*[INTEGER] * 5, PLACES, FLOATS, PLACES, FLOATS, PLACES, FLOATS, PLACES, FLOATS, PLACES, *[FLOATS] * 4)

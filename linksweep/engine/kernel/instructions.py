@@ -1,7 +1,7 @@
 """Write instructions on vectors of numbers: LLVM's own, by the names of a graph's operations.
 
 A processor with narrower registers gets several instructions for one, one without fused multiply-add calls the C
-library's. None is contracted or reordered, so results have the bits of numpy, for any width.
+library's. No compiler contracts or reorders them, so results have the same bits for any width, on any processor.
 """
 
 from __future__ import annotations

@@ -27,8 +27,8 @@ OPERATORS: Mapping[str, Callable[..., Any]] = {
     "where": np.where,
     **{name: getattr(low_words, name) for name in LOW_WORDS},
 }
-"""Operations on arrays, but fma and what is made of it, which numpy lacks; on numpy scalars, Python's own operators give
-numpy's results, and much faster."""
+"""Operations on arrays, but fma and what is made of it, which numpy lacks. On numpy scalars, Python's own operators
+give numpy's results, and much faster."""
 
 
 def interpret(nodes: Iterable[Node], values: dict[Node, Any], operators=OPERATORS) -> dict[Node, Any]:
