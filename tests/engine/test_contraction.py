@@ -37,8 +37,8 @@ def evaluated(function, values: dict[str, float], known=()) -> float:
     result = graph.node(function(*nodes))
     value = contracted([result]).values[result]
     needed = leading_to([value])
-    given = {node: np.float64(values[node.value]) for node in needed if node.operator == "input"}
-    return float(interpret(needed, given, EVERY)[value])
+    inputs = {node: np.float64(values[node.value]) for node in needed if node.operator == "input"}
+    return float(interpret(needed, inputs, EVERY)[value])
 
 
 def operators(function) -> set[str]:

@@ -17,7 +17,7 @@ import linksweep as ls
 from benchmarks.accuracy import digits as accuracy
 from benchmarks.speed.kernel import way
 from benchmarks.stress import __main__ as front_door
-from benchmarks.stress import conservative, errors, six_bars
+from benchmarks.stress import conservative, errors, missed, six_bars
 from benchmarks.stress.designs import FORCES, LINKS, Designs
 from benchmarks.stress.errors import errors_of
 from benchmarks.stress.families import FAMILIES, chunks
@@ -224,6 +224,15 @@ def test_a_missed_peak_and_a_wrong_arc_of_six_bars_are_counted(monkeypatch):
 def test_the_command_of_six_bars_prints_a_row_for_each_kind(capsys):
     assert six_bars.main(["--designs", "9"]) == 0
     assert [line.split()[0] for line in capsys.readouterr().out.splitlines()] == list(six_bars.KINDS)
+
+
+def test_missed_peaks_of_a_kind_are_counted_by_a_command(capsys, monkeypatch):
+    assert missed.main(["--designs", "12", "--only", "any lengths"]) == 0
+    kinds = "four-bar of any lengths", "six-bar of any lengths", "knuckle-joint press of any lengths"
+    assert [line.split(":")[0] for line in capsys.readouterr().out.splitlines()] == list(kinds)
+    peaks = ls.peaks
+    monkeypatch.setattr(ls, "peaks", lambda scene, **angles: peaks(scene, **angles) * (1.0 if angles else 0.9))
+    assert missed.check("four-bar", 6, 1).count == 6
 
 
 # ---- beside others -----
