@@ -6,10 +6,12 @@ import numpy as np
 import oracle
 import oracle_slider_crank
 import pytest
+import xarray as xr
 from long import long_but
 
 import linksweep as ls
 from linksweep.engine.trace.plan import plan
+from linksweep.scene.parameters import free, replaced
 
 COMPONENTS = tuple(f"{pin}{axis}" for pin in ("F12", "F32", "F43", "F14") for axis in "xy")
 REFERENCES = {"four-bar": oracle, "slider-crank": oracle_slider_crank}
@@ -69,6 +71,19 @@ def test_a_frame_at_right_angles_is_as_good(name, angle):
     scene = replace(scene, mechanism=replace(scene.mechanism, **{turned: angle}))
     bound = ls.sweep(scene, theta2=36, of=["error_bound"]).error_bound
     assert float(bound.min()) > 0.0 and float(bound.max()) < 1e-12
+
+
+@pytest.mark.parametrize("name", ["engine", "watt-2", "quick-return"])
+def test_it_is_the_same_alone_and_among_other_designs(name):
+    """Also of numbers that are 0 or 1, whose products are left out alone."""
+    scene, rng = ls.example(name), np.random.default_rng(3)
+    paths = [path for path in free(scene) if path.endswith((".mass", ".cg_angle", ".cg_distance"))][:6]
+    numbers = rng.choice([0.0, 1.0, 0.37, 0.81], (len(paths), 6))
+    own = [xr.DataArray(row, dims="design") for row in numbers]
+    together = ls.sweep(replaced(scene, dict(zip(paths, own, strict=True))), 17, of=["error_bound"]).error_bound
+    for k, column in enumerate(numbers.T):
+        alone = ls.sweep(replaced(scene, dict(zip(paths, column, strict=True))), 17, of=["error_bound"]).error_bound
+        np.testing.assert_array_equal(together.isel(design=k), alone)
 
 
 def test_nobody_else_pays_for_it():

@@ -4,15 +4,15 @@
 
 Of two products the second one is taken into the sum. The difference of a product and itself is 0 and stays so.
 
-This rule sees a sum as it is written and its operands, nothing else. Which of them are 0 or 1, and so are left out, is
-found after it: hence a design has the same operations, and bits, alone and among others, and a quantity in any request.
+This rule sees a sum as it is written and its operands, nothing else. Inputs that are 0 or 1, with what they make
+trivial, are left out after it: hence a design has the same bits alone and among others, and a quantity in any request.
 A value that a row of the table has given a name is a number of its own, and so are the words of double-doubles
 (`Node.rounded`): no sum takes such a product.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
 from linksweep.engine.trace.graph import Node, leading_to
@@ -27,12 +27,15 @@ class Contracted(NamedTuple):
     made: dict[Node, Node]
 
 
-def contracted(results: Iterable[Node]) -> Contracted:
-    """Contract and simplify the graph of what these results are written with."""
+def contracted(results: Iterable[Node], known: Mapping[str, float]) -> Contracted:
+    """Contract and simplify the graph of what these results are written with, of inputs that are `known` by name."""
     graph, values, made = Simplified(), dict[Node, Node](), dict[Node, Node]()
     for node in leading_to(results):
         before = len(graph.nodes)
-        values[node] = _value(graph, node, values) if node.operands else graph.copy(node, ())
+        if node.operator == "input" and node.value in known:
+            values[node] = graph.constant(known[node.value])
+        else:
+            values[node] = _value(graph, node, values) if node.operands else graph.copy(node, ())
         made |= dict.fromkeys(graph.nodes[before:], node)
     return Contracted(values, made)
 

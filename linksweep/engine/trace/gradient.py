@@ -95,11 +95,10 @@ def _passed_on(z: Node, mask: Mask, w: Node) -> list[tuple[Node, Mask, Node]]:
 
 
 def _divided(w: Node, z: Node, x: Node, y: Node) -> Node:
-    """Return w/y, of an adjoint w and a quotient z = x/y, without a division per sample where that can be: by z/x where
-    x is a constant but 0, and by 1/y where that is known for several samples of w."""
-    if x.operator == "constant" and x.value:
-        return w * (z * (1.0 / x.value))
-    return w * (1.0 / y) if y.dims < w.dims else w / y
+    """Return w/y, of an adjoint w and a quotient z = x/y: by z/x where x is a constant but 0, else by 1/y, which other
+    adjoints share, and many samples if it is the design's."""
+    inverse = z * (1.0 / x.value) if x.operator == "constant" and x.value else 1.0 / y
+    return w * inverse
 
 
 def _opposed(part: Node, x: Node | float, y: Node) -> tuple[Node, Node]:

@@ -59,7 +59,7 @@ class Node:
         return self.graph.apply("where", self, self.graph.node(x), self.graph.node(y))
 
     def rounded(self) -> Node:
-        """Return the value as a number of its own: no sum that takes it computes the product anew that it may be."""
+        """Return the value, of which a sum takes the rounded number, also if it is a product."""
         return self.graph.apply("rounded", self)
 
     def marked_low(self) -> Node:

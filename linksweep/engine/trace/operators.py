@@ -59,7 +59,7 @@ def traced(function: Callable[..., Iterable[Node | float]], count: int) -> Trace
 def traced_arctangent() -> Traced:
     """Return the arctangent of y and x as traced operations, contracted."""
     written = _traced(Graph(), lambda y, x: [arctangent(y, x, Node.where)], 2)
-    values = contracted((*written.inputs, *written.results)).values
+    values = contracted((*written.inputs, *written.results), {}).values
     inputs, results = ([values[node] for node in nodes] for nodes in (written.inputs, written.results))
     return Traced(inputs, [node for node in leading_to(results) if node not in inputs], results)
 

@@ -125,14 +125,13 @@ def plan(table: Table, request: tuple[str, ...], inputs: InputForms) -> Plan:
     Raises KeyError for a name that no row makes, and ValueError for one that is made of itself.
     """
     graph = Graph()
-    values: dict[str, Node] = {
-        name: graph.constant(form) if isinstance(form, float) else graph.input(name, form) for name, form in inputs
-    }
+    known = {name: form for name, form in inputs if isinstance(form, float)}
+    values = {name: graph.input(name, () if isinstance(form, float) else form) for name, form in inputs}
     _mark_low_words(graph, values)
     made_by: dict[str, range] = {}
     for name in request:
         _trace(name, table, graph, values, made_by)
-    done = contracted([values[name] for name in request])
+    done = contracted([values[name] for name in request], known)
     outputs = {name: done.values[values[name]] for name in request}
     alive = {done.made[node].position for node in leading_to(outputs.values())}
     functions = tuple(name for name, made in made_by.items() if not alive.isdisjoint(made))

@@ -10,7 +10,9 @@ Each operation passes on the errors of its operands and adds its own, half a uni
 
 (N. J. Higham, Accuracy and Stability of Numerical Algorithms, 2nd ed., section 3.3.) The bound holds for these very
 numbers, not on average, and costs about three times the operations of the result itself, only when requested. Exact
-inputs have no error; others are cosines, sines and products, wrong by a few roundings.
+inputs have no error; others are cosines, sines and products, wrong by a few roundings. Operations count as they are
+written, though some products are rounded only in the sums that take them, and products with 1 not at all: so the bound
+is the same alone and among other designs.
 """
 
 from __future__ import annotations

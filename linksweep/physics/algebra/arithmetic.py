@@ -47,7 +47,7 @@ def marked_low(x: Number) -> Number:
 
 
 def rounded(x: Number) -> Number:
-    """Return x, of which a sum in a trace takes the rounded value: else it would take a product's exact one."""
+    """Return x, of which a sum takes the rounded number: in a trace it would else take the exact one of a product."""
     return x.rounded() if hasattr(x, "rounded") else x
 
 

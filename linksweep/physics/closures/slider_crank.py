@@ -18,11 +18,12 @@ from linksweep.physics.coulomb import opposing, sliding_contact
 
 
 def guide_components(
-    crank_length: Number, offset: Number, psi_cos: Number, psi_sin: Number
+    crank_length: Number, offset: Number, psi_cos: Number, psi_cos_lo: Number, psi_sin: Number
 ) -> tuple[Number, Number, Number]:
-    """Return the crank's components along and across the guide, and the rod's component across."""
+    """Return the crank's components along and across the guide, and the rod's component across, which keeps its digits
+    if the rod is far shorter than the crank."""
     crank_across = crank_length * psi_cos
-    return -(crank_length * psi_sin), crank_across, offset - crank_across
+    return -(crank_length * psi_sin), crank_across, (offset - crank_across) - crank_length * psi_cos_lo
 
 
 def toggle_cosines(crank_length: Number, rod_length: Number, offset: Number) -> tuple[Number, Number, Number, Number]:

@@ -31,6 +31,7 @@ from stacked import assert_each_is_as_alone, stacked
 
 import linksweep as ls
 from linksweep.engine import run
+from linksweep.results.compute import compute
 
 EPS = float(np.finfo(float).eps)
 KINEMATICS = ("theta3", "omega3", "alpha3", "x_slider", "v_slider", "a_slider", "transmission_angle")
@@ -348,3 +349,16 @@ def test_a_peak_is_that_of_a_sample_that_moves(rod, drive):
         there = ls.sweep(scene, [worst[f"{name}_at"].item()], of=[quantity])
         assert meanings(there.status) == ["ok"], name
         assert worst[name].item() == pytest.approx(there[quantity].item(), rel=1e-9), name
+
+
+@pytest.mark.parametrize("angle", [0.0, 23.0])
+def test_a_rod_far_shorter_than_the_crank_is_rigid(angle):
+    """Its component across the guide is a difference of far larger numbers: 1e-11 of the rod once was rounding."""
+    machine = ls.SliderCrank(ls.Bar(0.7, 0.01, 0.01, 7850.0), ls.Link(2e-5, 1.0, 1e-10), 0.5, offset=0.4)
+    machine = replace(machine, slide_angle=angle)
+    reach = np.degrees(np.arcsin((0.4 + 2e-5 * np.linspace(-0.99, 0.99, 50)) / 0.7)) + angle
+    scene = ls.Scene(machine, omega2=10.0)
+    grid = scene.grid(reach)
+    status, x, y = (compute(scene.at(grid), grid, (name,))[name].values for name in ("status", "r3x", "r3y"))
+    assert not status.any()
+    np.testing.assert_allclose(np.hypot(x, y), 2e-5, rtol=4.0 * EPS)

@@ -31,11 +31,10 @@ def numbers(seed: int, count: int = len(NAMES)) -> list[float]:
 
 
 def evaluated(function, values: dict[str, float], known=()) -> float:
-    """Return a function's value by its operations; `known` names the numbers that are constants of the trace."""
+    """Return a function's value by its operations; `known` names the numbers that are known while tracing."""
     graph = Graph()
-    nodes = [graph.constant(x) if name in known else graph.input(name, ()) for name, x in values.items()]
-    result = graph.node(function(*nodes))
-    value = contracted([result]).values[result]
+    result = graph.node(function(*(graph.input(name, ()) for name in values)))
+    value = contracted([result], {name: values[name] for name in known}).values[result]
     needed = leading_to([value])
     inputs = {node: np.float64(values[node.value]) for node in needed if node.operator == "input"}
     return float(interpret(needed, inputs, EVERY)[value])
@@ -44,7 +43,7 @@ def evaluated(function, values: dict[str, float], known=()) -> float:
 def operators(function) -> set[str]:
     """Return the operators of the operations that a function comes to."""
     result = function(*map(Graph().input, NAMES, [()] * len(NAMES)))
-    return {node.operator for node in leading_to([contracted([result]).values[result]]) if node.operands}
+    return {node.operator for node in leading_to([contracted([result], {}).values[result]]) if node.operands}
 
 
 @pytest.mark.parametrize("name", SUMS)
