@@ -16,7 +16,7 @@ from linksweep.engine.kernel import vectors
 Facts = dict[str, str]
 VECTORS = {16: "AVX-512", 8: "AVX2", 4: "of two numbers"}
 """Names of vectors, by the number of samples that linksweep takes side by side."""
-WIDEST = max(VECTORS)
+WIDEST = VECTORS[max(VECTORS)]
 TRADE = re.compile(r"\((R|TM)\)|\b(Processor|CPU|\d+-Core)\b|@.*", re.IGNORECASE)
 """Parts of a processor's name to leave out: trade marks, the words that many share, the clock."""
 
@@ -40,7 +40,7 @@ def short_name(facts: Facts) -> str:
     """Return the processor's name without trade marks, and its vectors, if they are not the widest: processors of one
     name may differ in these."""
     name = " ".join(TRADE.sub(" ", facts["processor"]).split()) or "unknown"
-    return name if facts["vectors"] == VECTORS[WIDEST] else f"{name}, {facts['vectors']}"
+    return name if facts.get("vectors", WIDEST) == WIDEST else f"{name}, {facts['vectors']}"
 
 
 def _processor() -> str:

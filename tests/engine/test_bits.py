@@ -291,7 +291,7 @@ for ds in (ls.sweep(press, 20_000), ls.sweep(engine, 7200), ls.peaks(designs), l
 
 @pytest.mark.long
 def test_an_older_processor_with_one_thread_gives_the_same_bits(tmp_path):
-    """Of samples and of exact peaks: without wide vectors, and with the C library's function in place of FMA."""
+    """It has no wide vectors, and the C library's function in place of FMA; samples and exact peaks are compared."""
     older = {"NUMBA_CPU_NAME": "x86-64-v2", "NUMBA_NUM_THREADS": "1", "LINKSWEEP_CACHE_DIR": str(tmp_path)}
     runs = [
         subprocess.run(

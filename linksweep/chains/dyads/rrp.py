@@ -25,6 +25,8 @@ SLIDE = Limit("C", ("grip",), ("grip_noise",), "wedge"), Limit("C", ("ratio_slid
 """Limits of friction in the guide: where it wedges the slider, and where the slider turns round."""
 GUIDE = ("guide_cos", "guide_sin")
 CONTACT = Slide("normal_force", "friction_force", "T14", ("direction", "guide_cos", "guide_sin", "Cx", "Cy"))
+FROM_B = ("BCx_lo", "BCy_lo")
+"""What r3 misses of the vector from B to C."""
 ROD = ("rod_along", "rod_across", "inverse_rod_along")
 
 
@@ -52,6 +54,8 @@ def on_crank_and_ground(turned: bool) -> Rows:
         Row(planar.product, ("v_slider",), ("omega2", "ratio_slider")),
         Row(dyad_rrp.rrp_accelerations, ("alpha3", "a_slider")),
         Row(dyad_rrp.rrp_accelerations, ("slope3", "slope_slider"), ("uBx_slope", "uBy_slope", "ratio3", *ROD, *GUIDE)),
+        Row(moving_guide.on_guide, ("Cx", "Cy"), ("x_slider", "offset", *GUIDE)),
+        Row(pins.vector_low_words, FROM_B, ("Cx", "Cy", *full("B"), "r3x", "r3y")),
         *_closed(),
         Row(planar.along, ("vCx", "vCy"), ("v_slider", *GUIDE)),
         Row(planar.along, ("aCx", "aCy"), ("a_slider", *GUIDE)),
@@ -88,6 +92,8 @@ def between_pin_and_guide() -> Rows:
             ("a_B_guide_x", "a_B_guide_y", "ratio3", *ROD, *GUIDE),
         ),
         *rates("slider"),
+        Row(planar.vector_sum, ("Cx", "Cy"), ("Bx", "By", "r3x", "r3y")),
+        Row(pins.link_low_words, FROM_B, (*full("B"), "r3x", "r3y")),
         *_closed(),
         Row(planar.point_velocity, ("uCx", "uCy"), ("uBx", "uBy", "ratio3", "r3x", "r3y")),
         Row(
@@ -125,16 +131,14 @@ def slider_rows() -> Rows:
 
 def _closed() -> Rows:
     """Return the rows that follow from the factors low and high."""
-    from_B, from_O = ("BCx_lo", "BCy_lo"), full("OC_line")
+    from_O = full("OC_line")
     line = (*GUIDE, "guide_cos_lo", "guide_sin_lo", "offset", "offset_lo")
     return [
         Row(dyad_rrp.rrp_close, ("r3x", "r3y", "rod_along", "inverse_rod_along")),
         Row(dyad_rrp.rrp_status, ("closure",)),
         Row(dyad_rrp.rod_transmission_angle, ("transmission_angle",)),
-        Row(planar.vector_sum, ("Cx", "Cy"), ("Bx", "By", "r3x", "r3y")),
-        Row(pins.link_low_words, from_B, (*full("B"), "r3x", "r3y")),
         Row(pins.between, from_O, ("Cx", "Cy", 0.0, 0.0, *full("O"))),
-        Row(pins.excess_square, ("B_missing",), ("r3x", "r3y", *from_B, "rod_length", "rod_length_lo")),
+        Row(pins.excess_square, ("B_missing",), ("r3x", "r3y", *FROM_B, "rod_length", "rod_length_lo")),
         Row(pins.excess_component, ("guide_missing",), (*from_O, *line)),
         Row(planar.opposite, ("minus_guide_sin",), ("guide_sin",)),
         Row(
@@ -142,7 +146,7 @@ def _closed() -> Rows:
             ("Cx_lo", "Cy_lo"),
             ("B_missing", "guide_missing", "r3x", "r3y", "minus_guide_sin", "guide_cos", "inverse_rod_along"),
         ),
-        Row(planar.vector_sum, ("r3x_lo", "r3y_lo"), (*from_B, "Cx_lo", "Cy_lo")),
+        Row(planar.vector_sum, ("r3x_lo", "r3y_lo"), (*FROM_B, "Cx_lo", "Cy_lo")),
     ]
 
 

@@ -19,6 +19,7 @@ from linksweep.physics.algebra.double_double import (
     ordered_sum,
     overlapping_dot,
     two_product,
+    two_sum,
 )
 
 Four = tuple[Number, Number, Number, Number]
@@ -76,6 +77,14 @@ def link_low_words(
 ) -> tuple[Number, Number]:
     """Return what r misses of the vector from p to the rounded sum of p's high words and r."""
     return -(sum_low(px, rx) + px_lo), -(sum_low(py, ry) + py_lo)
+
+
+def vector_low_words(
+    qx: Number, qy: Number, px: Number, py: Number, px_lo: Number, py_lo: Number, rx: Number, ry: Number
+) -> tuple[Number, Number]:
+    """Return what r, a rounding or two away, misses of the vector from p to q's high words."""
+    (x, x_lo), (y, y_lo) = two_sum(qx, -px), two_sum(qy, -py)
+    return (x - rx) + (x_lo - px_lo), (y - ry) + (y_lo - py_lo)
 
 
 def apart(

@@ -70,7 +70,7 @@ def test_the_difference_of_a_product_and_itself_is_zero():
 
 
 def test_words_of_double_doubles_remain_exact():
-    """Where high words are rounded sums and products, both words add up to the exact result."""
+    """Both words add up to the exact result if the high word is a rounded sum or product."""
 
     def product_and_sum(a, b, c, d):
         high, low = double_double.two_product(a, b)
