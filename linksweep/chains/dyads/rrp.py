@@ -26,7 +26,7 @@ SLIDE = Limit("C", ("grip",), ("grip_noise",), "wedge"), Limit("C", ("ratio_slid
 GUIDE = ("guide_cos", "guide_sin")
 CONTACT = Slide("normal_force", "friction_force", "T14", ("direction", "guide_cos", "guide_sin", "Cx", "Cy"))
 FROM_B = ("BCx_lo", "BCy_lo")
-"""What r3 misses of the vector from B to C."""
+"""Names of what r3 misses of the vector from B to C: C lies on the guide on the ground, else at the rod's end."""
 ROD = ("rod_along", "rod_across", "inverse_rod_along")
 
 

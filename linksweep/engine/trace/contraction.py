@@ -4,8 +4,9 @@
 
 Of two products the second one is taken into the sum. The difference of a product and itself is 0 and stays so.
 
-This rule sees a sum as it is written and its operands, nothing else. Inputs that are 0 or 1, with what they make
-trivial, are left out after it: hence a design has the same bits alone and among others, and a quantity in any request.
+This rule sees a sum as it is written and its operands, nothing else. Inputs known to be 0 or 1, and the operations that
+these make trivial, are left out only afterwards: hence a design has the same bits alone and among others, and a
+quantity in any request.
 A value that a row of the table has given a name is a number of its own, and so are the words of double-doubles
 (`Node.rounded`): no sum takes such a product.
 """
@@ -49,10 +50,15 @@ def _value(graph: Simplified, node: Node, values: dict[Node, Node]) -> Node:
         if node.operator == "-":
             after, y_minus = -after, not y_minus
         for product, minus, other in ((y, y_minus, before), (x, x_minus, after)):
-            if product.operator == "*" and x is not y:
+            if product.operator == "*" and not _equal_products(x, y):
                 factors = (values[factor] for factor in product.operands)
                 return graph.apply("fnma" if minus else "fma", *factors, other)
     return graph.apply(node.operator, *operands)
+
+
+def _equal_products(x: Node, y: Node) -> bool:
+    """Return whether two nodes are products of the same factors."""
+    return x.operator == y.operator == "*" and {*x.operands} == {*y.operands}
 
 
 def _unsigned(node: Node) -> tuple[Node, bool]:

@@ -12,8 +12,6 @@ from collections.abc import Callable, Iterable
 
 LOW_WORDS = {"sum_low": "+", "difference_low": "-", "ordered_low": "+", "product_low": "*"}
 """Operations that give what the rounded result of another one misses: error bounds and derivatives leave them out."""
-COMMUTATIVE = {"+": 2, "*": 2, "sum_low": 2, "product_low": 2, "fma": 2, "fnma": 2}
-"""Operations of which the first operands, so many, may change places."""
 
 
 def _traced(operator: str, reflected: bool = False) -> Callable[..., Node]:
@@ -59,7 +57,7 @@ class Node:
         return self.graph.apply("where", self, self.graph.node(x), self.graph.node(y))
 
     def rounded(self) -> Node:
-        """Return the value, of which a sum takes the rounded number, also if it is a product."""
+        """Return the value as a rounded number: no sum takes it as an exact product."""
         return self.graph.apply("rounded", self)
 
     def marked_low(self) -> Node:
@@ -108,13 +106,17 @@ class Graph:
 
     def find(self, operator: str, *operands: Node) -> Node | None:
         """Return the node of an operation on these operands, if there is one."""
-        return self._known.get(_key(operator, operands, None))
+        return self._known.get(self._key(operator, operands, None))
 
     def _make(self, operator: str, operands: tuple[Node, ...], dims: frozenset[str], value) -> Node:
-        key = _key(operator, operands, value)
+        key = self._key(operator, operands, value)
         if key not in self._known:
             self._known[key] = Node(self, operator, operands, dims, value)
         return self._known[key]
+
+    def _key(self, operator: str, operands: tuple[Node, ...], value: object) -> tuple[str, tuple[int, ...], object]:
+        """Return what equal operations have in common."""
+        return operator, tuple(x.position for x in operands), value
 
 
 def operands(nodes: Iterable[Node]) -> set[Node]:
@@ -136,9 +138,3 @@ def leading_to(nodes: Iterable[Node]) -> list[Node]:
             known.add(node)
             waiting.extend(node.operands)
     return in_order(known)
-
-
-def _key(operator: str, operands: tuple[Node, ...], value: object) -> tuple[str, tuple[int, ...], object]:
-    """Return what equal operations have in common."""
-    positions, n = [x.position for x in operands], COMMUTATIVE.get(operator, 0)
-    return operator, (*sorted(positions[:n]), *positions[n:]), value

@@ -1,6 +1,6 @@
 """Leave out trivial operations: 0·x, 0 + x, 1·x, −(−x), and choices that are known while tracing.
 
-That changes no bit of any result. Signs are moved outward until a sum absorbs them: rounding is symmetric.
+That changes no bit of a finite result. Signs are moved outward until a sum absorbs them: rounding is symmetric.
 """
 
 from __future__ import annotations
@@ -9,6 +9,8 @@ from collections.abc import Callable, Mapping
 
 from linksweep.engine.trace.graph import Graph, Node
 
+COMMUTATIVE = {"+": 2, "*": 2, "sum_low": 2, "product_low": 2, "fma": 2, "fnma": 2}
+"""Operations of which the first operands, so many, may change places."""
 KNOWN: Mapping[str, Callable[..., float]] = {"<": lambda x, y: float(x < y), "abs": abs}
 """Operations that are computed where their operands are constants."""
 
@@ -21,6 +23,11 @@ class Simplified(Graph):
             return self.constant(KNOWN[operator](*(x.value for x in operands)))
         rule = RULES.get(operator)
         return rule(self, *operands) if rule else self.operation(operator, *operands)
+
+    def _key(self, operator: str, operands: tuple[Node, ...], value: object) -> tuple[str, tuple[int, ...], object]:
+        """Return what equal operations have in common, also if their operands have changed places."""
+        positions, n = [x.position for x in operands], COMMUTATIVE.get(operator, 0)
+        return operator, (*sorted(positions[:n]), *positions[n:]), value
 
     def add(self, x: Node, y: Node) -> Node:
         if x.is_constant(0.0):

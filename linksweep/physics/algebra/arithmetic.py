@@ -47,7 +47,7 @@ def marked_low(x: Number) -> Number:
 
 
 def rounded(x: Number) -> Number:
-    """Return x, of which a sum takes the rounded number: in a trace it would else take the exact one of a product."""
+    """Return x, in a trace as a rounded number: no sum takes it as an exact product."""
     return x.rounded() if hasattr(x, "rounded") else x
 
 

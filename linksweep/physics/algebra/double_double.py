@@ -1,8 +1,8 @@
 """Double-double arithmetic: a number as the unevaluated sum of a high and a low word, precise to twice the digits.
 
 Sums and products of two floats are exact under IEEE rounding, provided nothing overflows or underflows and nothing is
-contracted or reordered (Knuth, TAOCP 2, 4.2.2). Where high words cancel in a difference, the low words hold the
-remaining digits.
+contracted or reordered (Knuth, TAOCP 2, 4.2.2): `rounded` keeps sums in a trace from taking exact products. Where high
+words cancel in a difference, the low words hold the remaining digits.
 """
 
 from linksweep.physics.algebra.arithmetic import Number, marked_low, ordered_low, product_low, rounded, sum_low

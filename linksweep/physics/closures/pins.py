@@ -82,7 +82,7 @@ def link_low_words(
 def vector_low_words(
     qx: Number, qy: Number, px: Number, py: Number, px_lo: Number, py_lo: Number, rx: Number, ry: Number
 ) -> tuple[Number, Number]:
-    """Return what r, a rounding or two away, misses of the vector from p to q's high words."""
+    """Return what r, which differs by roundings of p and q, misses of the vector from p to (qx, qy)."""
     (x, x_lo), (y, y_lo) = two_sum(qx, -px), two_sum(qy, -py)
     return (x - rx) + (x_lo - px_lo), (y - ry) + (y_lo - py_lo)
 

@@ -20,8 +20,8 @@ from linksweep.physics.coulomb import opposing, sliding_contact
 def guide_components(
     crank_length: Number, offset: Number, psi_cos: Number, psi_cos_lo: Number, psi_sin: Number
 ) -> tuple[Number, Number, Number]:
-    """Return the crank's components along and across the guide, and the rod's component across, which keeps its digits
-    if the rod is far shorter than the crank."""
+    """Return the crank's components along and across the guide, and the rod's component across: where the rod is far
+    shorter than the crank, that keeps its digits, as its sum takes the exact product (`engine.trace.contraction`)."""
     crank_across = crank_length * psi_cos
     return -(crank_length * psi_sin), crank_across, (offset - crank_across) - crank_length * psi_cos_lo
 

@@ -6,12 +6,17 @@ import numpy as np
 import pytest
 from fused import EVERY
 
+import linksweep as ls
 from linksweep.engine.quantity import Row, Table
 from linksweep.engine.trace.contraction import contracted
+from linksweep.engine.trace.derivatives import derivative_of
 from linksweep.engine.trace.graph import Graph, leading_to
 from linksweep.engine.trace.operators import interpret
 from linksweep.engine.trace.plan import plan
+from linksweep.engine.trace.simplified import COMMUTATIVE
 from linksweep.physics.algebra import double_double
+from linksweep.scene.derivatives.differentiated import differentiated
+from linksweep.scene.parameters import free
 
 NAMES = ("a", "b", "c", "d")
 SUMS = {
@@ -96,6 +101,41 @@ def test_a_named_value_is_a_number_of_its_own():
     for name in ("total", "difference"):
         request = plan(Table("theta2", rows), (name,), tuple((name, ()) for name in NAMES))
         assert {node.operator for node in request.nodes if node.operands} == {"*", "+" if name == "total" else "-"}
+
+
+def test_another_row_with_the_same_sum_the_other_way_round_changes_nothing():
+    rows = Row(lambda a, b, c, d: a * b + c * d, ("one",)), Row(lambda a, b, c, d: c * d + a * b, ("other",))
+    forms = tuple((name, ()) for name in NAMES)
+    for request in (("one", "other"), ("other", "one")):
+        together = plan(Table("theta2", rows), request, forms)
+        for name in request:
+            alone = plan(Table("theta2", rows), (name,), forms)
+            assert written(together.outputs[name]) == written(alone.outputs[name])
+
+
+@pytest.mark.parametrize("name", ["press", "pump-jack", "scotch-yoke"])
+def test_no_request_changes_a_quantity_or_a_derivative(name):
+    """Whatever is traced before it, in whichever order."""
+    scene = ls.example(name)
+    paths = [path for path in free(scene) if path.endswith((".length", ".mass", ".cg_angle", ".width"))][:3]
+    quantities = tuple(scene.mechanism.unknowns(scene.drive))[::3]
+    sampled = differentiated(scene, quantities, paths).at(scene.grid(5))
+    every = [*quantities, *(derivative_of(name, path) for name in quantities for path in paths)]
+    forms = sampled.inputs.forms
+    alone = {name: written(plan(sampled.table, (name,), forms).outputs[name]) for name in every}
+    for request in (every, every[::-1], np.random.default_rng(1).permutation(every).tolist()):
+        together = plan(sampled.table, tuple(request), forms).outputs
+        assert {name: written(together[name]) for name in every} == alone
+
+
+def written(node) -> int:
+    """Return a number that differs where the operations that lead to a node do, or the order of operands."""
+    known = {}
+    for x in leading_to([node]):
+        operands = [known[y] for y in x.operands]
+        free_order = COMMUTATIVE.get(x.operator, 0)
+        known[x] = hash((x.operator, x.value, *sorted(operands[:free_order]), *operands[free_order:]))
+    return known[node]
 
 
 def drawn_function(draw: np.random.Generator, operations: int = 25):
