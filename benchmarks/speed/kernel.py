@@ -22,7 +22,7 @@ from linksweep.results.system import sampled_systems
 class Kernel(NamedTuple):
     """A compiled kernel: its sources, as `engine.kernel.compile` takes them, and a call bound to all its arguments."""
 
-    sources: tuple[str, str]
+    sources: tuple[str, ...]
     call: Call
 
 

@@ -15,6 +15,7 @@ import linksweep as ls
 from benchmarks.cases import ALL, GENERAL, NINE, batch, scene
 from benchmarks.speed.kernel import kernel_of, way
 from linksweep.base import cache
+from linksweep.engine import run
 from linksweep.engine.kernel import compile, vectors
 from linksweep.engine.kernel.machine_code import INTEGER
 
@@ -94,6 +95,21 @@ def test_the_search_for_the_largest_is_packed(assembly):
         pytest.skip("LLVM 15, of numba 0.61, takes the maxima one by one: the same numbers, more slowly")
     call, *_ = CALLS["peaks"]
     assert len(re.findall(rf"\bvmaxpd\s.*%{registers}", assembly(call))) >= 8
+
+
+def test_lines_are_written_past_the_caches_at_once(monkeypatch, assembly):
+    """Halves of a line with stores to others between them go to memory one by one: results took three times as long."""
+    width()
+    monkeypatch.setattr(vectors, "width", lambda: 8)
+    monkeypatch.setattr(run, "STREAMED_FROM", 0)
+    run.runner.cache_clear()
+    stores = re.findall(r"\bvmovntp[sd]\s+%([yz])mm\d+, (\d*)\((.*)\)", assembly(partial(ls.sweep, general, 72)))
+    run.runner.cache_clear()
+    halves = [(base, int(offset or 0)) for register, offset, base in stores if register == "y"]
+    assert len(stores) - len(halves) // 2 == len(ls.sweep(general, 72).data_vars) - 1  # all but status
+    for (base, offset), (next_base, next_offset) in zip(halves[::2], halves[1::2], strict=True):
+        assert base == next_base
+        assert {offset % 64, next_offset % 64} == {0, 32}
 
 
 CONDITIONS = """

@@ -75,10 +75,16 @@ def width() -> int:
     return 16 if "+avx512f" in features else 8 if "+avx" in features else 4
 
 
+def width_in_stages() -> int:
+    """Return how many samples a loop in stages takes side by side: one register of them, as many values are under
+    way."""
+    return width() // 2
+
+
 def write_function(builder: Any, function: FunctionType, passed: Mapping[str, Any], streamed: str) -> None:
     """Write the instructions of a function of these arguments; rows of the array that is `streamed` are stored past the
-    caches."""
-    writer, arguments = _Writer(builder), list[Any]()
+    caches, in vectors that fill lines of them."""
+    writer, arguments = _Writer(builder, max(width(), REGISTER) if streamed else width()), list[Any]()
     for name, llvm in passed.items():
         row = passed.get(ROW_LENGTHS.get(name, "")), name == streamed
         arguments.append(_Array(writer, llvm, *row) if llvm.type.is_pointer else _Value(writer, llvm))
@@ -198,8 +204,8 @@ class _Memory:
 class _Writer:
     """Writer of one function's instructions."""
 
-    def __init__(self, builder: Any) -> None:
-        self.builder, self.instructions = builder, Instructions(builder, width())
+    def __init__(self, builder: Any, width: int) -> None:
+        self.builder, self.instructions = builder, Instructions(builder, width)
         _align_stack(builder.function)
         self.head: Any = None
         """The block before the outermost loop that is being written."""
@@ -225,8 +231,8 @@ class _Writer:
             yield place(j)
 
     def places(self, count: int) -> _Places:
-        """Return places for what passes of a loop in stages keep: single registers, as there are many."""
-        self.instructions = Instructions(self.builder, width() // 2)
+        """Return places for what passes of a loop in stages keep."""
+        self.instructions = Instructions(self.builder, width_in_stages())
         return _Places(self, count)
 
     def memory(self, places: int, vectors: int) -> _Memory:

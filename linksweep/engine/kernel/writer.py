@@ -46,10 +46,11 @@ class Reduction:
 
 
 class Writer:
-    """Writer of one kernel, level by level: level k is the body of the k-th design loop, level 0 encloses all loops."""
+    """Writer of one kernel, level by level: level k is the body of the k-th design loop, level 0 encloses all loops.
+    Long loops over samples are done in stages where they may be `staged`."""
 
-    def __init__(self, plan: Plan, reductions: tuple[Reduction, ...]) -> None:
-        self.plan, self.reductions = plan, reductions
+    def __init__(self, plan: Plan, reductions: tuple[Reduction, ...], staged: bool = True) -> None:
+        self.plan, self.reductions, self.staged = plan, reductions, staged
         self.innermost = min(len(plan.loops), DEEPEST)
         self.nodes = list(plan.nodes)
         stored = () if reductions else plan.stored
@@ -199,7 +200,7 @@ class Writer:
         self._function("rows", level)
         self._read_singles({*written, *operands(work)} - set(work))
         bounds = "0, samples" if self.plan.loops else "first, last"
-        if loop := pipeline(work):
+        if loop := pipeline(work) if self.staged else None:
             self._in_stages(bounds, loop, {*written})
         else:
             self._line(1, f"for j in in_vectors({bounds}, samples):")
