@@ -167,7 +167,7 @@ def confirm(summits, count, lanes, half, tables, evaluate, trials, brackets, gat
                     opened = 0
                 known = int(trials[SUMMIT, lane]) if trials[CONFIRMED, lane] > 0.0 else -1
                 samples = rows[place // lanes], x[place // lanes], half, lanes, columns
-                opened = open_brackets(samples, signal, place % lanes, known, True, tag, brackets, opened, tops)
+                opened = open_brackets(samples, signal, place % lanes, known, True, True, tag, brackets, opened, tops)
     refine(brackets, opened, lanes, width, 0, constants, gathered, evaluate, tops)
 
 

@@ -8,9 +8,10 @@ import math
 from linksweep.engine.peaks.brackets import BEYOND, NOISE, PEAK, PEAK_FAR, PEAK_X, RISE, open_bracket
 
 
-def open_brackets(samples, signal, lane, known, even, tag, brackets, count, best):
+def open_brackets(samples, signal, lane, known, even, close, tag, brackets, count, best):
     """Open brackets about all summits of a signal that may exceed its peak so far, that of the `known` summit, or else
-    its highest sample (−1: none is known); return their number. `even` signals are the same on both halves.
+    its highest sample (−1: none is known); return their number. `even` signals are the same on both halves. A `close`
+    look also finds summits between neighbours, where samples may lie too far apart.
 
     Samples are a row for each place, the places, the samples on either side of the middle of each half turn, and the
     numbers of lanes and of columns, those of all signals.
@@ -28,7 +29,7 @@ def open_brackets(samples, signal, lane, known, even, tag, brackets, count, best
     for j in range(first, last + 1):
         right = sample_of(samples, j + 1, column)
         stands = left < value and value >= right
-        if even or (stands and j != known):
+        if close or (stands and j != known):
             floor = noise(left, value, right)
             least = top + (RISE * abs(top) if confirmed else 10.0 * floor)
             far = j // (2 * half)
@@ -37,7 +38,7 @@ def open_brackets(samples, signal, lane, known, even, tag, brackets, count, best
             if stands and j != known and might_reach(left, value, right, 1.0) > least:
                 open_bracket(brackets, count, start, middle, end, far, signal, tag, floor)
                 count += 1
-            if even and j > first and might_reach_between(before, left, value, right) > least:
+            if close and (j > first or not even) and might_reach_between(before, left, value, right) > least:
                 unknown = 0.5 * (x[at] + x[at + lanes]), -math.inf
                 open_bracket(brackets, count, start, unknown, middle, far, signal, tag, floor)
                 count += 1

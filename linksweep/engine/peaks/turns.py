@@ -2,8 +2,9 @@
 
 All signals of a few designs are evaluated at the samples of the turn. One pass keeps each signal's best summit: the
 sample whose neighbours allow the highest peak. The quartic through five samples about it predicts the peak, and four
-evaluations confirm it. Where they do not, where another summit may be as high, or where signals jump, brackets about
-all summits that may be the highest are refined (`engine.peaks.brackets`): those of many designs at once.
+evaluations confirm it. Where they do not, where another summit may be as high or hide between samples far apart, or
+where signals jump, brackets about all summits that may be the highest are refined (`engine.peaks.brackets`): those of
+many designs at once.
 
 `search` is plain Python that is translated to machine code. Arithmetic in lanes is traced and written as vector
 instructions. A design has the same bits whichever others stand beside it, and where nothing is compiled.
@@ -23,6 +24,9 @@ PEAK_ANGLE = PEAK_X
 """Row of `best` that has angles from the near-toggle [degree], in place of tangents, once a search of turns is done."""
 BLOCKS = 32
 """Blocks of designs whose brackets are refined together."""
+NARROW = 1e-3
+"""Half-width of a near-toggle below which samples may lie too far apart: each is then 1.4 to 2.4 times as far from the
+near-toggle as the last one, and two of a million searches missed a summit between neighbours."""
 ROOM = 4 * SAMPLES
 """Brackets that are refined together, at most."""
 CAUTION = 3.0
@@ -81,13 +85,16 @@ def search(
                 for row in range(EVALUATIONS + 1):
                     copy_lanes(state, row, column, best, tag, lanes)
                 for lane in range(lanes):
-                    if not smooth or state[FINAL, column + lane] == 0.0:
-                        if count + 2 * HALF > brackets.shape[1]:
+                    close = min(own[lane], own[lanes + lane]) < NARROW
+                    if close or not smooth or state[FINAL, column + lane] == 0.0:
+                        if count + 2 * SAMPLES > brackets.shape[1]:
                             refine(brackets, count, lanes, width, start * lanes, constants, gathered, evaluate, best)
                             count = 0
                         k = column + lane
                         known = int(state[SUMMIT, k]) if smooth and state[CONFIRMED, k] > 0.0 else -1
-                        count = open_brackets(samples, signal, lane, known, False, tag + lane, brackets, count, best)
+                        count = open_brackets(
+                            samples, signal, lane, known, False, close, tag + lane, brackets, count, best
+                        )
         refine(brackets, count, lanes, width, start * lanes, constants, gathered, evaluate, best)
         for signal in range(signals):
             place_angles(best, signal * width + start * lanes, signal * width + stop * lanes)

@@ -44,6 +44,8 @@ def test_a_peak_at_once_after_the_start_of_a_piece_is_found():
         ("knuckle-joint press with friction", 9, 270_000, 3882),  # at once after the start of a piece
         ("Watt six-bar", 5, 10_000, 9818),  # two tops about one sample, both on the quartic through five
         ("Watt six-bar", 10, 610_000, 3623),  # a narrow top beside a sample, between a steep flank and a level one
+        ("inverted slider-crank", 1_000_084, 0, 6848),  # between samples, each half as far from a narrow near-toggle
+        ("inverted slider-crank", 1_000_085, 0, 8900),  # as the one before it
     ],
 )
 def test_designs_that_were_missed_are_no_more(name, seed, part, design):
