@@ -8,7 +8,7 @@ from typing import Any
 
 from benchmarks.accuracy.grids import MEDIAN, MOST, POPULATIONS
 from benchmarks.accuracy.solves import LINKSWEEP, NEAR, OURS, RATES
-from benchmarks.machine import machine
+from benchmarks.machine import machine, short_name
 from benchmarks.speed.exact import EXACT
 from benchmarks.timing import Row
 
@@ -17,7 +17,7 @@ HERE = Path(__file__).parent
 BLACK, GREY, SHADE = "#000000", "#666666", "#EBEBEB"
 BLUE, ORANGE, GREEN, PURPLE = "#0072B2", "#D55E00", "#009E73", "#CC79A7"
 """Colours of Okabe and Ito."""
-MACHINE = "{processor}, one core; {system}, Python {Python}, numpy {numpy}, numba {numba}, linksweep {linksweep}"
+MACHINE = "{name}, one core; {system}, Python {Python}, numpy {numpy}, numba {numba}, linksweep {linksweep}"
 STYLE = {"font.size": 9.0, "axes.spines.top": False, "axes.spines.right": False, "figure.dpi": 160}
 LEAST = 1e-16
 """Smaller errors are drawn as this."""
@@ -50,7 +50,8 @@ def _two_panels(**more: Any) -> Any:
     import matplotlib.pyplot as plt
 
     figure, panels = plt.subplots(1, 2, figsize=(10.0, 5.2), sharey=True, layout="constrained", **more)
-    figure.supxlabel(MACHINE.format_map(machine()), fontsize=7.0, color=GREY)
+    facts = machine()
+    figure.supxlabel(MACHINE.format_map({"name": short_name(facts), **facts}), fontsize=7.0, color=GREY)
     return figure, panels
 
 
