@@ -21,7 +21,6 @@ from linksweep.engine.peaks.turns import (
     OTHER,
     REACH,
     SUMMIT,
-    close_comparison_of_half,
     comparison_of_half,
     pick_sample,
     place_samples,
@@ -38,7 +37,7 @@ HIDDEN = 0.1
 """Most that a signal may rise between a sample and its neighbours if these are as high, relative to the fall to the
 next ones. About the end of a piece signals are even, and a quartic rises by 1/48."""
 
-compare_closely, compare_samples_of_few = close_comparison_of_half(HALF), comparison_of_half(FEW)
+compare_few, compare_many = comparison_of_half(FEW), comparison_of_half(HALF)
 
 
 def search(
@@ -95,12 +94,11 @@ def sample_piece(front, piece, designs, lanes, of_designs, sampling, tables, row
 
 
 def compare(rows, columns, half, state):
-    """Note the best summit of each signal on pieces side by side, and how high that and any other may reach: more
-    closely where near-toggles may be narrow, so that samples far apart may hide a summit."""
+    """Note the best summit of each signal on pieces side by side, and how high that and any other may reach."""
     if half == FEW:
-        compare_samples_of_few(rows[(FEW - 1) * columns :], 2 * FEW + 4, state, columns)
+        compare_few(rows[(FEW - 1) * columns :], 2 * FEW + 4, state, columns)
     else:
-        compare_closely(rows[(HALF - 1) * columns :], 2 * HALF + 4, state, columns)
+        compare_many(rows[(HALF - 1) * columns :], 2 * HALF + 4, state, columns)
 
 
 def note_summits(rows, state, lanes, place, half, own, highest, summits, count, tops):

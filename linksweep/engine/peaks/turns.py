@@ -145,19 +145,8 @@ def compare_samples(left, first, second, right, number, summit, reach, other):
 
 
 def comparison_of_half(half):
-    """Return `compare_samples` for signals that are the same on both halves of a turn: the samples of one, and the one
-    before and two after them, which are no summits."""
-
-    @around(NOTHING_YET)
-    def compare(left, first, second, right, number, summit, reach, other):
-        height, number = summit_of(left, first, second, right, number)
-        return with_summit(on_half(number, half, height), number + (half - 1.0), summit, reach, other)
-
-    return compare
-
-
-def close_comparison_of_half(half):
-    """Return the same for samples that may lie too far apart: also note summits between neighbours."""
+    """Return the same for signals that are the same on both halves of a turn, of the samples of one, and the one before
+    and two after them, which are no summits. These may lie too far apart: summits between neighbours are noted, too."""
 
     @around({**NOTHING_YET, BEFORE: math.nan})
     def compare(left, first, second, right, number, summit, reach, other, before):

@@ -74,7 +74,7 @@ def test_a_top_between_two_of_four_samples_that_rise_or_fall_is_noted(top, dip, 
     for before in (3, 4):  # the samples are compared two by two
         state, padded = np.zeros((turns.STATE_ROWS, 1)), np.full((2 * HALF + 4, 1), samples.min() - 1.0)
         padded[before : before + 4, 0] = samples
-        on_pieces.compare_closely(padded.ravel(), len(padded), state, 1)
+        on_pieces.compare_many(padded.ravel(), len(padded), state, 1)
         assert reach in [*state[[turns.REACH, turns.OTHER], 0], -np.inf]
 
 

@@ -33,6 +33,7 @@ def test_a_peak_at_once_after_the_start_of_a_piece_is_found():
         ("four-bar with a table", 0, 70_000, 9990),  # between the samples of a piece stood two tops of a pchip curve
         ("four-bar with a function", 0, 440_000, 7464),  # a trial fell 7e-7 of a bracket's width from its middle
         ("four-bar with a function", 0, 450_000, 5741),  # a top between four samples that fall
+        ("four-bar with a function", 1_000_029, 0, 9250),  # a torque's smallest value between two of few samples
         ("Watt six-bar", 0, 220_000, 9453),  # a near-toggle just beyond the end of a half turn
         ("Watt six-bar", 0, 400_000, 1148),  # two near-toggles, 7° apart, of which the samples show one
         ("Watt six-bar", 0, 440_000, 4866),  # two near-toggles between two samples
