@@ -86,13 +86,17 @@ def _compared(scene: ls.Scene, near_toggle: float) -> Missed:
     start = perf_counter()
     exact = ls.peaks(scene)
     halfway = perf_counter()
-    turns = np.arange(0.0, scene.period, 360.0)
-    dense = ls.peaks(scene, theta2=np.add.outer(turns, angles(near_toggle)).ravel())
+    dense = ls.peaks(scene, theta2=of_all_turns(scene, near_toggle))
     times = halfway - start, perf_counter() - halfway
     short = shortfall(exact, dense)
     k = int(short.argmax())
     worst = {path: array.values[k] for path, array in scene.arrays.items()}
     return Missed(len(short), int((short > ALLOWED).sum()), float(short[k]), worst, *times)
+
+
+def of_all_turns(scene: ls.Scene, near_toggle: float) -> Array:
+    """Return `angles` of each turn of a scene's cycle."""
+    return np.add.outer(np.arange(0.0, scene.period, 360.0), angles(near_toggle)).ravel()
 
 
 def angles(near_toggle: float) -> Array:
