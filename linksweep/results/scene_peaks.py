@@ -31,18 +31,19 @@ from linksweep.results.compute import (
 from linksweep.results.dataset import design_coordinates, flags, plain, provenance, variable
 from linksweep.results.direct_dataset import dataset_of
 from linksweep.results.peak_search.along_paths import SignalPeak
-from linksweep.results.peak_search.between import EVERYWHERE, NEVER
+from linksweep.results.peak_search.between import EVERYWHERE, NEVER, ONE, designs_on
 from linksweep.results.peak_search.exact import exact_peaks, of_designs_that_share, peaks_where, peaks_within
 from linksweep.results.peak_search.friction.jams import may_jam
 from linksweep.results.peak_search.friction.motion import of_free_angles
-from linksweep.results.peak_search.groups import empty
+from linksweep.results.peak_search.groups import Group, all_at_once, different, empty
 from linksweep.results.peak_search.limits import assembly_of
 from linksweep.results.peak_search.paths import Part
 from linksweep.results.peak_search.poles import with_dead_centres
 from linksweep.results.peak_search.quadrature import Power, means
 from linksweep.scene.at_sections import with_sections
-from linksweep.scene.dimensions import aligned
+from linksweep.scene.dimensions import aligned, side_by_side
 from linksweep.scene.grid import in_order
+from linksweep.scene.pairs import changes, flat_index
 from linksweep.scene.scene import Scene
 
 SUMMARIES = ("mean", "rms", "bound", "samples")
@@ -53,6 +54,9 @@ AT_END = ("inside", "first", "last", "no_peak")
 PARTIAL, UNBOUNDED = 1, 3
 CANNOT_ASSEMBLE, TOGGLE = 1, 2
 """Statuses of a sample at which a design does not close."""
+STATUS_EXTREMES = Reduction("least_sample", "status"), Reduction("largest_sample", "status")
+AT_ONCE = 8192
+"""Designs whose status is computed together, so that the memory for it does not grow with a study."""
 
 
 class Request(NamedTuple):
@@ -68,12 +72,12 @@ Averages = dict[Power, Field]
 
 
 class Result(NamedTuple):
-    """Largest values and means, the scene at the angles that decide its status, and the assembly of each design, which
-    the samples alone decide where `by_samples`."""
+    """Largest values and means, the scene at the angles that decide its status, and the assembly of each design: None
+    where it was not looked for. Where `by_samples`, a design that closes at none of them cannot be assembled."""
 
     sampled: Scene
     grid: Grid
-    assembly: Field
+    assembly: Field | None
     by_samples: bool
     largest: dict[str, SignalPeak]
     averages: Averages
@@ -224,7 +228,7 @@ def _of_samples(scene: Scene, angles: ArrayLike, items: list[Request], threads: 
     averaged |= _over_time(sampled, grid, powers, pace[0], threads, solver) if pace else {}
     # a search for where designs close takes longer than samples, whose status shows enough
     by_samples = scene.table.limits is not None
-    assembly = Field((), np.zeros(())) if by_samples else assembly_of(scene, threads)
+    assembly = None if by_samples else assembly_of(scene, threads)
     return Result(sampled, grid, assembly, by_samples, extremes, averaged)
 
 
@@ -250,41 +254,81 @@ def status_of(scene: Scene, result: Result, threads: int | None) -> xr.Variable:
     Peaks and means of designs without any sample that is ok become NaN.
     """
     sampled, grid, assembly, by_samples, largest, averages = result
-    order = tuple(sampled.inputs.sizes)
-    status = variable(assembly, "1", "", order)
+    status = Field((), np.zeros(())) if assembly is None else assembly
     if not surely_ok(scene):
-        least = worst = variable(empty(scene, ("status",))["status"], "1", "", order)
-        if grid.period == 0.0 or (status.values != PARTIAL).any():  # else no sample changes anything
-            least, worst = _extremes_of_status(scene, sampled, grid, threads)
+        samples = _extremes_of_status(scene, assembly, sampled, grid, threads)
+        dims, (known, least, worst) = side_by_side((status, *samples))
         closes = (least < CANNOT_ASSEMBLE) | (worst > TOGGLE) | (not by_samples)
-        status = xr.where((worst > 0.0) & (status == 0.0), xr.where(closes, float(PARTIAL), NEVER), status)
+        known = np.where((worst > 0.0) & (known == 0.0), np.where(closes, float(PARTIAL), NEVER), known)
+        status = Field(dims, known)
         # on an arc these samples do not decide: the search along paths has looked at it more closely
-        _blank((least == 0.0) | (status == float(PARTIAL)) & (grid.period > 0.0), largest, averages)
+        _blank(Field(dims, (least == 0.0) | (known == float(PARTIAL)) & (grid.period > 0.0)), largest, averages)
     for dims, values in (*(peak.value for peak in largest.values()), *averages.values()):
         infinite = np.isinf(values)
         if np.count_nonzero(infinite):  # faster than `any`
-            status = xr.where(variable(Field(dims, infinite), "1", "", order), float(UNBOUNDED), status)
-    dims = tuple(dim for dim in order if dim in status.dims)
+            dims, (unbounded, known) = side_by_side((Field(dims, infinite), status))
+            status = Field(dims, np.where(unbounded > 0.0, float(UNBOUNDED), known))
+    dims = tuple(dim for dim in sampled.inputs.sizes if dim in status.dims)
     words = flags(scene.mechanism.round_trip, scene.mechanism.round_meanings)
     return plain(Field(dims, aligned(status, dims).astype(np.int8)), words)
 
 
 def _extremes_of_status(
-    scene: Scene, sampled: Scene, grid: Grid, threads: int | None
-) -> tuple[xr.Variable, xr.Variable]:
-    """Return the best and the worst status of each design's samples."""
-    reductions = tuple(Reduction(kind, "status") for kind in ("least_sample", "largest_sample"))
+    scene: Scene, assembly: Field | None, sampled: Scene, grid: Grid, threads: int | None
+) -> tuple[Field, Field]:
+    """Return the best and the worst status of each design's samples; NaN of designs whose assembly says enough."""
+    least, worst = (empty(scene, ("status",))["status"] for _ in range(2))
+    if assembly is not None and grid.period > 0.0:
+        if (assembly.values == PARTIAL).all():  # no sample changes anything
+            return least, worst
+        # a search has found jams and dead centres, too: the assembly tells of them
+        located = scene.table.limits is not None or scene.mechanism.ok_clear_of_toggles(scene.drive)
+        if located and not changes(scene, ("status",)):
+            for group, *numbers in _status_of_turning(scene, assembly, grid, threads):
+                at = flat_index(least, group.places, len(group.designs))
+                least.values.reshape(-1)[at], worst.values.reshape(-1)[at] = numbers
+            return least, worst
     request = plan(scene.table, ("status",), sampled.inputs.forms)
     if any(grid.dim in sampled.inputs.fields[name].dims for name in request.inputs if name in sampled.inputs.fields):
         sampled = scene.at(grid)
-    reduced = reduce_rows(request, reductions, sampled.inputs.fields, grid, sampled.inputs.sizes, threads)
-    least, worst = (variable(reduced[r][0], "1", "", tuple(sampled.inputs.sizes)) for r in reductions)
+    reduced = reduce_rows(request, STATUS_EXTREMES, sampled.inputs.fields, grid, sampled.inputs.sizes, threads)
+    least, worst = (reduced[extreme][0] for extreme in STATUS_EXTREMES)
     return least, worst
 
 
-def _blank(ok: xr.Variable, largest: dict[str, SignalPeak], averages: Averages) -> None:
-    """Make peaks and means NaN where no design that shares a number is ok."""
-    good = Field(tuple(map(str, ok.dims)), ok.values)
+def _status_of_turning(
+    scene: Scene, assembly: Field, grid: Grid, threads: int | None
+) -> Iterator[tuple[Group, np.ndarray, np.ndarray]]:
+    """Yield the designs that close at every angle, with the best and the worst status of their samples.
+
+    One that is ok where it comes nearest to a toggle is ok everywhere; only others are sampled.
+    """
+    designs = different(scene, ("status",))
+    for some in np.split(designs, range(AT_ONCE, len(designs), AT_ONCE)):
+        every = all_at_once(scene, some)
+        turning = every.some(np.flatnonzero(every.number(assembly) == EVERYWHERE))
+        ok = _ok_nearest_to_toggles(turning)
+        yield turning.some(np.flatnonzero(ok)), np.zeros(1), np.zeros(1)
+        if not ok.all():
+            others = turning.some(np.flatnonzero(~ok))
+            request, inputs = designs_on(scene, others.designs, ("status",), grid)
+            reduced = reduce_rows(request, STATUS_EXTREMES, inputs, grid, {ONE: len(others.designs)}, threads)
+            least, worst = (reduced[extreme][0].values for extreme in STATUS_EXTREMES)
+            yield others, least, worst
+
+
+def _ok_nearest_to_toggles(group: Group) -> np.ndarray:
+    """Return whether each of these designs has status 0 where it comes nearest to its toggles, or touches them; and at
+    one angle, as parts that stand still may be in a toggle at all."""
+    angles = np.pad(group.near_toggles()[0], ((0, 0), (0, 1)))
+    angles = angles + group.number(group.scene.mechanism.near_toggle_angle)[:, None]
+    row, nth = np.nonzero(np.isfinite(angles))
+    failing = group.values(("status",), row, angles[row, nth])[0] > 0.0
+    return np.bincount(row, failing, len(angles)) == 0.0
+
+
+def _blank(good: Field, largest: dict[str, SignalPeak], averages: Averages) -> None:
+    """Make peaks and means NaN where no design that shares a number is good."""
     if not good.values.all():
         largest |= peaks_where(good, largest)
         averages |= {power: only_where(good, field) for power, field in averages.items()}

@@ -106,6 +106,13 @@ def places_of(sizes: Mapping[str, int], designs: Array) -> dict[str, Array]:
     return dict(zip(sizes, np.unravel_index(designs, tuple(sizes.values())), strict=True))
 
 
+def flat_index(field: Field, places: Places, count: int) -> Array:
+    """Return the row-major index into a field's values of each of `count` places."""
+    if not field.dims:
+        return np.zeros(count, dtype=int)
+    return np.ravel_multi_index(tuple(places[dim] for dim in field.dims), field.values.shape)
+
+
 def different_designs(scene: Scene, names: tuple[str, ...]) -> Array:
     """Return the numbers of designs, one for each set of designs that share the values of all these quantities."""
     inputs = scene.at_one_angle.inputs

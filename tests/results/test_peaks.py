@@ -12,9 +12,11 @@ from oracle import random_lengths
 import linksweep as ls
 from linksweep.engine import run
 from linksweep.engine.kernel import reduce
+from linksweep.results import scene_peaks
 from linksweep.scene.parameters import replaced
 
 FORCES = ("F12", "F32", "F43", "F14")
+LINKS = ("crank", "coupler", "rocker")
 BAR = {"width": 0.02, "thickness": 0.02, "density": 7750.0}
 
 
@@ -318,6 +320,48 @@ def test_status_and_values_of_designs_that_do_not_close():
                 assert float(one[f"T12_{name}_at"]) == pytest.approx(angle, abs=1e-6)
             assert float(one.T12_mean) == pytest.approx(np.nanmean(rows.T12.values), rel=1e-9, abs=1e-9)
             assert float(one.F32_rms) == pytest.approx(math.sqrt(np.nanmean(rows.F32.values**2)), rel=1e-9)
+
+
+def change_points(kind: str) -> ls.Scene:
+    """Two machines that pass a toggle, at a sample of the status and between two; others a little off it."""
+    links = {role: ls.Link(length, 1.0, 0.01) for role, length in zip(LINKS, (1.0, 2.0, 2.0), strict=True)}
+    ground, angle = over("design", 3.0, 3.0, 3.0 - 1e-13, 2.9), over("design", 0.0, 0.123, 0.0, 0.0)
+    if kind == "FourBar":
+        return ls.Scene(ls.FourBar(**links, ground=ground, ground_angle=angle), 1.0)
+    pins = {"A": (0.0, 0.0), "D": (ground * np.cos(np.radians(angle)), ground * np.sin(np.radians(angle)))}
+    return ls.Scene(ls.Linkage("crank A-B, coupler B-C, rocker D-C", ground=pins, **links), 1.0)
+
+
+@pytest.mark.parametrize("omega2", [1.0, lambda theta2: 2.0 + np.sin(np.radians(theta2))])
+@pytest.mark.parametrize("kind", ["FourBar", "Linkage"])
+def test_the_status_of_machines_at_and_near_a_change_point_is_that_of_720_samples(kind, omega2):
+    scene = replace(change_points(kind), omega2=omega2)
+    status = ls.peaks(scene, of=["omega3"]).status.values
+    np.testing.assert_array_equal(status, (ls.sweep(scene, 720, of=["omega3"]).status > 0).any("theta2"))
+    assert status.tolist() == [1, 0, 0, 0]
+
+
+def test_a_yoke_along_its_guide_is_in_a_toggle_at_every_angle():
+    parts = {"crank": ls.Bar(0.08, **BAR), "yoke": ls.Slider(2.0, slot_angle=over("design", 0.0, 90.0, 1e-14, 45.0))}
+    machine = ls.Linkage(
+        "crank A-B, yoke on slide past B", ground={"A": (0.0, 0.0)}, guides={"slide": ls.Guide(angle=10.0)}, **parts
+    )
+    peaks = ls.peaks(ls.Scene(machine, 5.0), of=["F12"])
+    assert peaks.status.values.tolist() == [2, 0, 2, 0]
+    np.testing.assert_array_equal(np.isnan(peaks.F12_peak), peaks.status > 0)
+
+
+@pytest.mark.parametrize("kind", ["FourBar", "Linkage"])
+def test_the_status_is_sampled_of_designs_that_touch_a_toggle_alone(kind, monkeypatch):
+    sampled = []
+
+    def reduce_rows(plan, reductions, inputs, grid, sizes, threads):
+        sampled.append([*sizes.values()])
+        return run.reduce_rows(plan, reductions, inputs, grid, sizes, threads)
+
+    monkeypatch.setattr(scene_peaks, "reduce_rows", reduce_rows)
+    ls.peaks(change_points(kind), of=["omega3"])
+    assert sampled == [[2]]
 
 
 # ------------------------------------------------------------------------------------------------ bits

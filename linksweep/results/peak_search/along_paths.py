@@ -18,7 +18,7 @@ from linksweep.engine.run import Field
 from linksweep.results.peak_search.groups import Group
 from linksweep.results.peak_search.paths import QUARTER, Part, Paths
 from linksweep.results.peak_search.poles import poles
-from linksweep.scene.pairs import Array, Places, in_period
+from linksweep.scene.pairs import Array, flat_index, in_period
 
 NODES, SPANS = 10, (25.0, 5.0, 1.0, 0.2, 0.04)
 """Samples before a toggle from which a signal is extrapolated, and the distances from it of the farthest ones, in steps
@@ -77,7 +77,7 @@ def start_near_period(angle: Array, period: float) -> Array:
 
 def put(peak: SignalPeak, group: Any, numbers: tuple[Array, ...]) -> None:
     """Write the four numbers of a signal's peak of each of a group's designs."""
-    at = _flat_index(peak.value, group.places, len(group.designs))
+    at = flat_index(peak.value, group.places, len(group.designs))
     for field, values in zip(peak, numbers, strict=True):
         field.values.reshape(-1)[at] = values
 
@@ -85,7 +85,7 @@ def put(peak: SignalPeak, group: Any, numbers: tuple[Array, ...]) -> None:
 def raise_to(peak: SignalPeak, group: Any, numbers: tuple[Array, ...]) -> None:
     """Replace a signal's peaks of a group's designs, some of which may share one, by the highest of these numbers."""
     if len(group.designs):
-        _raise(peak, _flat_index(peak.value, group.places, len(group.designs)), *numbers)
+        _raise(peak, flat_index(peak.value, group.places, len(group.designs)), *numbers)
 
 
 def follow(group: Any, peaks: dict[str, SignalPeak], all_paths: tuple[PathsOf, ...], threads: int | None) -> None:
@@ -94,7 +94,7 @@ def follow(group: Any, peaks: dict[str, SignalPeak], all_paths: tuple[PathsOf, .
         if not len(paths.row):
             continue
         places = group.some(paths.row).places
-        at = [_flat_index(peak.value, places, len(paths.row)) for peak in peaks.values()]
+        at = [flat_index(peak.value, places, len(paths.row)) for peak in peaks.values()]
         current = [peak.value.values.reshape(-1)[index] for peak, index in zip(peaks.values(), at, strict=True)]
         best = highest(group, tuple(peaks), paths, np.stack(current, axis=1), threads)
         for k, (peak, index) in enumerate(zip(peaks.values(), at, strict=True)):
@@ -109,16 +109,9 @@ def raise_to_poles(group: Any, peaks: dict[str, SignalPeak], threads: int | None
         row, angle, infinite = row[inside], angle[inside], infinite[inside]
     places, angle = group.some(row).places, angle_in_period(angle, group.scene.period)
     for k, peak in enumerate(peaks.values()):
-        at = _flat_index(peak.value, places, len(row))[infinite[:, k]]
+        at = flat_index(peak.value, places, len(row))[infinite[:, k]]
         for field, values in zip(peak[:3], (np.inf, angle[infinite[:, k]], 0.0), strict=True):
             field.values.reshape(-1)[at] = values
-
-
-def _flat_index(field: Field, places: Places, count: int) -> Array:
-    """Return the row-major index into a field's values of each of `count` places."""
-    if not field.dims:
-        return np.zeros(count, dtype=int)
-    return np.ravel_multi_index(tuple(places[dim] for dim in field.dims), field.values.shape)
 
 
 def _raise(peak: SignalPeak, at: Array, best: Array, best_angle: Array, best_bound: Array, taken: Array) -> None:

@@ -7,17 +7,14 @@ from typing import Any
 import numpy as np
 
 from linksweep.engine.quantity import Table
-from linksweep.engine.run import Fields, evaluate
+from linksweep.engine.run import Fields, Grid, evaluate
 from linksweep.engine.trace.plan import InputForms, Plan, plan
 from linksweep.scene.dimensions import aligned
-from linksweep.scene.pairs import Array, inputs_along, places_of, quantities_at
+from linksweep.scene.pairs import Array, changes, inputs_along, places_of, quantities_at
 from linksweep.scene.scene import Scene
 
 EVERYWHERE, PARTLY, NEVER = 0.0, 1.0, 2.0
 """Assembly of a design: at every crank angle, at some, or at none."""
-CHOSEN = "_chosen"
-"""Dim of designs that are computed at the same angles."""
-
 ONE = "_one"
 """Dim of designs, or of pieces of their turns, each with its own value of every parameter."""
 
@@ -39,6 +36,18 @@ def one_by_one(
     return request, {**fields, **own}
 
 
+def designs_on(scene: Scene, designs: Array, names: tuple[str, ...], grid: Grid) -> tuple[Plan, Fields]:
+    """Return the plan of quantities for which nothing but the angles of a grid changes from sample to sample, and its
+    inputs: a value for each of these designs along the dim `ONE`."""
+    inputs = scene.at_one_angle.inputs
+    forms = tuple(
+        (name, (ONE,) if isinstance(form, tuple) and form and name not in grid.names else form)
+        for name, form in inputs.forms
+    )
+    request = plan(scene.table, names, forms)
+    return request, inputs_along(ONE, request, inputs, places_of(inputs.sizes, designs))
+
+
 def number_of(scene: Scene, number: Any, designs: Array) -> Array:
     """Return a parameter of a scene, or a number computed from parameters, for each of these designs."""
     if not hasattr(number, "dims"):
@@ -49,16 +58,9 @@ def number_of(scene: Scene, number: Any, designs: Array) -> Array:
 
 def positions_at(scene: Scene, names: tuple[str, ...], designs: Array, angles: Array) -> Array:
     """Return values (names, designs, angles) of functions of the position, at angles [degree] shared by all designs."""
-    grid, inputs = scene.grid(angles), scene.at_one_angle.inputs
-    forms = tuple(
-        (name, (CHOSEN,) if isinstance(form, tuple) and form and name not in grid.names else form)
-        for name, form in inputs.forms
-    )
-    request, places = plan(scene.table, names, forms), places_of(inputs.sizes, designs)
-    if any(grid.dim in inputs.fields[name].dims for name in request.inputs if name in inputs.fields):
-        # as of the length of a cylinder that is moved
+    if changes(scene, names):  # as of the length of a cylinder that is moved
         pairs = np.repeat(designs, len(angles)), np.tile(angles, len(designs))
         return quantities_at(scene, names, *pairs).reshape(len(names), len(designs), len(angles))
-    values = evaluate(request, inputs_along(CHOSEN, request, inputs, places), grid, {CHOSEN: len(designs)})
-    shape = len(designs), len(angles)
-    return np.stack([np.broadcast_to(aligned(values[name], (CHOSEN, grid.dim)), shape) for name in names])
+    grid, shape = scene.grid(angles), (len(designs), len(angles))
+    values = evaluate(*designs_on(scene, designs, names, grid), grid, {ONE: len(designs)})
+    return np.stack([np.broadcast_to(aligned(values[name], (ONE, grid.dim)), shape) for name in names])

@@ -14,9 +14,9 @@ from linksweep.engine.peaks.evaluators import FAR_WIDTH, NEAR_WIDTH
 from linksweep.engine.quantity import Table
 from linksweep.engine.run import Field, Fields, evaluate
 from linksweep.engine.trace.plan import InputForms, Plan, plan
-from linksweep.results.peak_search.between import EVERYWHERE, ONE, PARTLY, number_of, one_by_one
+from linksweep.results.peak_search.between import EVERYWHERE, ONE, PARTLY, designs_on, number_of, one_by_one
 from linksweep.results.peak_search.limits import Limits, limits_of, signals_of
-from linksweep.scene.pairs import Array, Places, different_designs, inputs_along, places_of, quantities_at
+from linksweep.scene.pairs import Array, Places, different_designs, places_of, quantities_at
 from linksweep.scene.parameters import replaced
 from linksweep.scene.scene import Scene
 
@@ -59,10 +59,8 @@ class Group(NamedTuple):
 
     def constants(self, *names: str) -> Array:
         """Return values (names, designs) of quantities that depend on no angle."""
-        inputs, count = self.scene.at_one_angle.inputs, len(self.designs)
-        forms = tuple((name, (ONE,) if isinstance(form, tuple) and form else form) for name, form in inputs.forms)
-        request, at = plan(self.scene.table, names, forms), places_of(inputs.sizes, self.designs)
-        values = evaluate(request, inputs_along(ONE, request, inputs, at), self.scene.grid(1), {ONE: count})
+        grid, count = self.scene.grid(1), len(self.designs)
+        values = evaluate(*designs_on(self.scene, self.designs, names, grid), grid, {ONE: count})
         return np.stack([np.broadcast_to(values[name].values, count) for name in names])
 
     def assembly(self) -> Array:

@@ -313,7 +313,7 @@ def values_at(group: Group, names: tuple[str, ...], angles: Array, threads: int 
 def _evaluated(group: Group, pieces: Pieces, names: tuple[str, ...]) -> tuple[Plan, Fields]:
     """Return the plan of quantities on pieces, and its inputs: those of the designs, and of the pieces."""
     index, (table, own) = group.scene.mechanism.index, _on_own_pieces(group, pieces)
-    start, end = map(pieces.tangents, (pieces.start, pieces.end))
+    start, end = (np.atleast_2d(own[name].values) for name in ENDS)
     widths = np.minimum(_widths(pieces, start, end, *group.near_toggles()), pieces.widths)
     own |= {name: _of_pieces(values) for name, values in zip(WIDTHS, widths, strict=True)}
     places = ((ALONG, (index, ONE, PIECE)), (END, (index,)))

@@ -14,7 +14,6 @@ from itertools import chain
 from typing import Any
 
 import numpy as np
-import xarray as xr
 
 from linksweep.chains.finding import Finding
 from linksweep.engine.quantity import regardless_of_jams
@@ -62,15 +61,12 @@ def with_dead_centres(scene: Scene, assembly: Field) -> Field:
     """Return `assembly` as it is, but PARTLY where a dead centre or friction forbids some angles of a whole turn."""
     if surely_ok(scene):
         return assembly
-    status = xr.Variable(assembly.dims, assembly.values, fastpath=True)  # else xarray imports dask to look at them
-    if may_jam(scene):
-        jammed = jammed_designs(scene)
-        status = xr.where(xr.Variable(jammed.dims, jammed.values) & (status < PARTLY), PARTLY, status)
+    forbidding = [jammed_designs(scene)] if may_jam(scene) else []
     if "unbounded" in scene.mechanism.round_meanings:
-        for dims, angles in chain(_poles_by_search(scene), _poles_in_closed_form(scene)):
-            some = xr.Variable(dims, np.isfinite(angles).any(axis=-1))
-            status = xr.where(some & (status < PARTLY), PARTLY, status)
-    return Field(tuple(map(str, status.dims)), status.values)
+        poles = chain(_poles_by_search(scene), _poles_in_closed_form(scene))
+        forbidding += [Field(dims, np.isfinite(angles).any(axis=-1)) for dims, angles in poles]
+    dims, (status, *some) = side_by_side((assembly, *forbidding))
+    return Field(dims, np.where(np.any(some, axis=0) & (status < PARTLY), PARTLY, status)) if some else assembly
 
 
 def _poles_by_search(scene: Scene) -> Iterator[tuple[tuple[str, ...], Array]]:
