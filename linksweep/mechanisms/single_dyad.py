@@ -118,7 +118,7 @@ class SingleDyad(Machine):
         """Return whether the numbers alone ensure status 0 at every sample, friction included."""
         return super().always_ok(drive) and (not self.rubs or self._never_wedged)
 
-    @property
+    @cached_property
     def _never_wedged(self) -> bool:
         reach, other = self._narrowest[0]
         with np.errstate(over="ignore"):
