@@ -42,10 +42,10 @@ def evaluate(plan: Plan, values: Values, sizes: Mapping[str, int]) -> Values:
 
 def _numbers(program: Program, values: Values, of_designs: tuple[int, ...]) -> np.ndarray:
     """Return the numbers that depend on no sample (design, number)."""
-    each = [values[node] for node in program.numbers]
-    if not of_designs:
-        return np.array([each], dtype=np.float64)
-    numbers = np.empty((math.prod(of_designs), len(each)))
+    each, designs = [values[node] for node in program.numbers], math.prod(of_designs)
+    if designs == 1:
+        return np.array([[value.item() for value in each]], dtype=np.float64)
+    numbers = np.empty((designs, len(each)))
     for column, value in zip(numbers.T, each, strict=True):
         column[:] = np.broadcast_to(value, (*of_designs, 1)).reshape(-1)
     return numbers
