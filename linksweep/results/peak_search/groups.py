@@ -206,7 +206,9 @@ def crossing(values_at: Callable[[Array], Array], start: Point, end: Point, step
     """
     (a, f_a), (b, f_b) = start, end
     for _ in range(steps):
-        x = b - f_b * (b - a) / (f_b - f_a)
+        with np.errstate(all="ignore"):
+            x = b - f_b * (b - a) / (f_b - f_a)
+        x = np.where(np.isfinite(x), x, 0.5 * (a + b))  # where the line through both has no zero
         f = values_at(x)
         f = np.nan_to_num(f)  # where there is no value, as in a jam, the place itself is near enough
         beyond = (f < 0.0) == (f_b < 0.0)

@@ -125,7 +125,7 @@ def known_on_pieces(scene: Scene) -> bool:
     """Return whether pieces of the cycle, between which all jumps lie, state the motion and the loads over the
     angle."""
     machine = scene.mechanism
-    divided = bool(machine.directions()) or not machine.jumps()
+    divided = scene.unloaded.steady if machine.directions() else not machine.jumps()  # a moved cylinder may turn slides
     simple = not (scene.table.contacts or scene.approaches()) and scene.period_of_motion == machine.period
     return divided and simple and machine.fastest <= FASTEST and (scene.steady or _loads(scene) is not None)
 

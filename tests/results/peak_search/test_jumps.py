@@ -83,3 +83,38 @@ def test_check_knows_which_link_wedges():
     status = ls.sweep(scene, 36_000, of=["status"]).status
     jammed = np.flatnonzero(np.diff((status.values >= 3).astype(int)))
     np.testing.assert_allclose(np.sort(ls.check(scene).jam_angle.values), status.theta2.values[jammed], atol=0.011)
+
+
+# --------------------------------------------------------------------------------------------- linkages
+
+
+def test_the_ram_of_a_moved_cylinder_may_turn_round_with_it():
+    angle = np.arange(0.0, 360.0, 5.0)
+    length = xr.DataArray(0.3 + 0.02 * np.cos(np.radians(angle)), {"theta2": angle}, "theta2")
+    machine = ls.Linkage(
+        "crank A-B, coupler B-C, rocker D-C-E, cylinder E~F, ram F on guide",
+        ground={"A": (0.0, 0.0), "D": (0.2, 0.0)},
+        points={"E": (0.2, 10.0)},
+        guides={"guide": ls.Guide(through=(0.3, 0.0), friction=0.1)},
+        **{role: ls.Link(x, 1.0, 1e-3) for role, x in (("crank", 0.05), ("coupler", 0.2), ("rocker", 0.15))},
+        cylinder=ls.Cylinder(length=length),
+        ram=ls.Slider(1.0),
+    )
+    scene = ls.Scene(machine, 5.0, gravity=(0.0, -9.81))
+    largest = ls.sweep(scene, 7200, of=["F12"]).F12.max()
+    assert 0.0 <= ls.peaks(scene, of=["F12"]).F12_peak / largest - 1.0 < 1e-6
+
+
+def test_a_yoke_with_much_friction_has_its_peaks_beside_one_in_a_toggle():
+    slot, slope = xr.DataArray([0.0, 90.0], dims="design"), ls.Guide(angle=10.0, friction=1.0)
+    machine = ls.Linkage(
+        "crank A-B, yoke on guide past B",
+        ground={"A": (0.0, 0.0)},
+        guides={"guide": slope},
+        crank=ls.Bar(0.08, width=0.02, thickness=0.02, density=7750.0),
+        yoke=ls.Slider(2.0, slot_angle=slot, slot_friction=1.0),
+    )
+    scene = ls.Scene(machine, 5.0, gravity=(0.0, -9.81))
+    peaks, largest = ls.peaks(scene, of=["F12"]), ls.sweep(scene, 7200, of=["F12"]).F12.max("theta2")
+    assert peaks.status.values.tolist() == [2, 0]
+    assert 0.0 <= (peaks.F12_peak / largest - 1.0)[1] < 1e-6
