@@ -7,7 +7,7 @@ from importlib import import_module
 from typing import Any
 
 from linksweep.base.fields import converted_fields, declared, has_fields
-from linksweep.base.frozen import cached_property, field_values, normalise
+from linksweep.base.frozen import field_values, normalise
 from linksweep.base.validate import is_array
 
 
@@ -22,10 +22,6 @@ class ByContent:
         return content(self) == content(other) if type(other) is type(self) else NotImplemented
 
     def __hash__(self) -> int:
-        return self._hash
-
-    @cached_property
-    def _hash(self) -> int:
         return hash(content(self))
 
     def __getstate__(self) -> dict[str, Any]:

@@ -64,7 +64,7 @@ def with_sound(owner: Owner, **values: Any) -> Owner:
 def bare(value: Any) -> Any:
     """Return a number, or an object with its numbers, without labels: arrays become Variables of xarray, which align
     nothing and are faster."""
-    return _bare(value) if has_fields(value) else with_arrays(value, _variable)
+    return with_arrays(value, lambda array: array.variable)
 
 
 def with_arrays(value: Any, convert: Callable[[Any], Any]) -> Any:
@@ -121,15 +121,6 @@ def cached_copy(copied: Callable[[Owner], Owner]) -> Callable[[Owner], Owner]:
         return made
 
     return cached
-
-
-@cached_copy
-def _bare(owner: Any) -> Any:
-    return with_arrays(owner, _variable)
-
-
-def _variable(array: Any) -> Any:
-    return array.variable
 
 
 def _same(old: Any, new: Any) -> bool:

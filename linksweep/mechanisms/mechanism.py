@@ -242,7 +242,7 @@ class Mechanism(ByContent, ABC):
         reasons = {"friction": self.rubs, "pressure angles of gears": bool(self.teeth)}
         return " and ".join(reason for reason, holds in reasons.items() if holds)
 
-    @cached_property
+    @property
     def rubs(self) -> bool:
         """True where some part slides with friction."""
         return any(mu != 0.0 if type(mu) is float else np.any(mu) for mu in self.frictions.values())
@@ -300,8 +300,8 @@ class Mechanism(ByContent, ABC):
         return drive == "crank" and self.closes_everywhere
 
     def ok_clear_of_toggles(self, drive: str) -> bool:
-        """Return whether a sample is ok at which a design closes and is in no toggle: nothing jams or stands still."""
-        return drive == "crank" and bool(self.drives) and not self.rubs
+        """Return whether a design that is ok where it comes nearest to its toggles is ok at every angle."""
+        return False
 
     def jumps(self) -> tuple[Number, ...]:
         """Return the crank angles [degree] at which a force may jump."""

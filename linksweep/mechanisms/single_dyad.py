@@ -118,6 +118,10 @@ class SingleDyad(Machine):
         """Return whether the numbers alone ensure status 0 at every sample, friction included."""
         return super().always_ok(drive) and (not self.rubs or self._never_wedged)
 
+    def ok_clear_of_toggles(self, drive: str) -> bool:
+        """Return whether a design that is ok where it comes nearest to its toggles is ok at every angle."""
+        return drive == "crank" and not self.rubs
+
     @cached_property
     def _never_wedged(self) -> bool:
         reach, other = self._narrowest[0]

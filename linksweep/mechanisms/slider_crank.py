@@ -8,7 +8,6 @@ from typing import Any, ClassVar
 import numpy as np
 
 from linksweep.base.fields import of_kind, parameter
-from linksweep.base.frozen import cached_property
 from linksweep.base.validate import Number
 from linksweep.chains.chain import Own
 from linksweep.chains.equations import equations
@@ -169,10 +168,6 @@ class SliderCrank(SingleDyad):
         tuple of float or DataArray
             Angles [degree], for each branch stretched (C farthest from A), then folded; NaN in designs without any.
         """
-        return self._dead_centres
-
-    @cached_property
-    def _dead_centres(self) -> tuple[Number, ...]:
         signs = [BRANCH_SIGN[self.branch]] if self.branch in BRANCH_SIGN else BRANCH_SIGN.values()
         return tuple(angle for sign in signs for angle in self._cylinder(sign).dead_centres())
 

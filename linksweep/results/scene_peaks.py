@@ -281,9 +281,9 @@ def _extremes_of_status(
     if assembly is not None and grid.period > 0.0:
         if (assembly.values == PARTIAL).all():  # no sample changes anything
             return least, worst
-        # a search has found jams and dead centres, too: the assembly tells of them
-        located = scene.table.limits is not None or scene.mechanism.ok_clear_of_toggles(scene.drive)
-        if located and not changes(scene, ("status",)):
+        # not of linkages: where parts hardly move, noise hides near-toggles from the search
+        known = scene.table.limits is None and scene.mechanism.ok_clear_of_toggles(scene.drive)
+        if known and not changes(scene, ("status",)):
             for group, *numbers in _status_of_turning(scene, assembly, grid, threads):
                 at = flat_index(least, group.places, len(group.designs))
                 least.values.reshape(-1)[at], worst.values.reshape(-1)[at] = numbers
@@ -318,10 +318,8 @@ def _status_of_turning(
 
 
 def _ok_nearest_to_toggles(group: Group) -> np.ndarray:
-    """Return whether each of these designs has status 0 where it comes nearest to its toggles, or touches them; and at
-    one angle, as parts that stand still may be in a toggle at all."""
-    angles = np.pad(group.near_toggles()[0], ((0, 0), (0, 1)))
-    angles = angles + group.number(group.scene.mechanism.near_toggle_angle)[:, None]
+    """Return whether each of these designs has status 0 where it comes nearest to its toggles, or touches them."""
+    angles = group.near_toggles()[0] + group.number(group.scene.mechanism.near_toggle_angle)[:, None]
     row, nth = np.nonzero(np.isfinite(angles))
     failing = group.values(("status",), row, angles[row, nth])[0] > 0.0
     return np.bincount(row, failing, len(angles)) == 0.0

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from linksweep.base.frozen import cached_beside
 from linksweep.chains.rows.crank import OverDesigns
 from linksweep.engine.run import Field
 from linksweep.engine.trace.plan import InputForms
@@ -15,7 +14,6 @@ from linksweep.scene.dimensions import side_by_side
 from linksweep.scene.grid import rows
 
 if TYPE_CHECKING:
-    from linksweep.mechanisms.mechanism import Mechanism
     from linksweep.scene.scene import Scene
 
 
@@ -40,19 +38,13 @@ def engine_inputs(scene: Scene) -> Inputs:
 
 def _named_values(scene: Scene) -> dict[str, Any]:
     """Return the numbers of motion, machine and loads under the names that the physics takes."""
-    values = scene.motion | _parameters(scene.mechanism)
+    values = scene.motion | scene.mechanism.parameters()
     if "section" in scene.motion:
         values |= scene.mechanism.beam_numbers()
     values |= over_designs(scene.mechanism.driven_numbers(scene.motion))
     for k, load in enumerate(scene.loads, 1):
         values |= load.parameters(f"load{k}", values)
     return values
-
-
-@cached_beside
-def _parameters(mechanism: Mechanism) -> dict[str, Any]:
-    """Return the parameters of a mechanism, of which a scene with loads and one without have the same."""
-    return mechanism.parameters()
 
 
 def over_designs(functions: OverDesigns) -> dict[str, Field]:

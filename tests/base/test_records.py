@@ -7,7 +7,6 @@ from dataclasses import FrozenInstanceError, replace
 import pytest
 import xarray as xr
 
-from linksweep.base import equality
 from linksweep.base.equality import content
 from linksweep.base.fields import PairField, declared, has_fields, left_out, numbers
 from linksweep.base.records import NamedField, Record, record
@@ -52,16 +51,6 @@ def test_arrays_are_compared_by_content():
     x = xr.DataArray([0.1, 0.2], dims="design")
     assert record(PIN, {"D": (x, 0)}) == record(PIN, {"D": (x.copy(), 0)})
     assert record(PIN, {"D": (x, 0)}) != record(PIN, {"D": (2.0 * x, 0)})
-
-
-def test_content_is_read_once_for_the_hash(monkeypatch):
-    read = []
-    monkeypatch.setattr(equality, "content", lambda value: read.append(value) or content(value))
-    pins = record(PIN, {"D": (xr.DataArray([0.1, 0.2], dims="design"), 0)})
-    assert hash(pins) == hash(pins) and [value is pins for value in read].count(True) == 1
-    for again in (copy.copy(pins), pickle.loads(pickle.dumps(pins)), replace(pins, D=(1, 0))):
-        hash(again)  # those of texts differ from process to process
-        assert [value is again for value in read].count(True) == 1
 
 
 def test_a_record_prints_as_a_dict_and_empty_it_is_left_out():

@@ -341,18 +341,7 @@ def test_the_status_of_machines_at_and_near_a_change_point_is_that_of_720_sample
     assert status.tolist() == [1, 0, 0, 0]
 
 
-def test_a_yoke_along_its_guide_is_in_a_toggle_at_every_angle():
-    parts = {"crank": ls.Bar(0.08, **BAR), "yoke": ls.Slider(2.0, slot_angle=over("design", 0.0, 90.0, 1e-14, 45.0))}
-    machine = ls.Linkage(
-        "crank A-B, yoke on slide past B", ground={"A": (0.0, 0.0)}, guides={"slide": ls.Guide(angle=10.0)}, **parts
-    )
-    peaks = ls.peaks(ls.Scene(machine, 5.0), of=["F12"])
-    assert peaks.status.values.tolist() == [2, 0, 2, 0]
-    np.testing.assert_array_equal(np.isnan(peaks.F12_peak), peaks.status > 0)
-
-
-@pytest.mark.parametrize("kind", ["FourBar", "Linkage"])
-def test_the_status_is_sampled_of_designs_that_touch_a_toggle_alone(kind, monkeypatch):
+def test_the_status_is_sampled_of_four_bars_that_touch_a_toggle_alone(monkeypatch):
     sampled = []
 
     def reduce_rows(plan, reductions, inputs, grid, sizes, threads):
@@ -360,7 +349,7 @@ def test_the_status_is_sampled_of_designs_that_touch_a_toggle_alone(kind, monkey
         return run.reduce_rows(plan, reductions, inputs, grid, sizes, threads)
 
     monkeypatch.setattr(scene_peaks, "reduce_rows", reduce_rows)
-    ls.peaks(change_points(kind), of=["omega3"])
+    ls.peaks(change_points("FourBar"), of=["omega3"])
     assert sampled == [[2]]
 
 

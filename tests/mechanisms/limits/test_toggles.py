@@ -12,6 +12,7 @@ import numpy as np
 import oracle_inverted_slider_crank as inverted
 import oracle_slider_crank as slider
 import pytest
+import xarray as xr
 from oracle import FourBarData, random_data, solve, to_scene
 from references import LinkData, largest_force, mp
 
@@ -229,3 +230,27 @@ def test_a_machine_that_closes_at_one_angle_only():
     links = (ls.Link(length, 1.0, 0.01) for length in (0.25, 0.125, 0.125))
     peaks = ls.peaks(ls.Scene(ls.FourBar(*links, ground=0.5), omega2=30.0))
     assert np.isnan(peaks.F32_peak) and int(peaks.status) == 1
+
+
+def test_a_linkage_that_hardly_moves_is_sampled_for_its_toggles():
+    turn, crank = np.radians(123.0), 1e-12
+    links = {
+        role: ls.Link(x, 1.0, 0.01)
+        for role, x in zip(("crank", "coupler", "rocker"), (crank, 1.3 - crank, 0.3), strict=True)
+    }
+    pins = {"A": (0.0, 0.0), "D": (np.cos(turn), np.sin(turn))}
+    scene = ls.Scene(ls.Linkage("crank A-B, coupler B-C, rocker D-C", ground=pins, **links), 5.0)
+    assert (ls.sweep(scene, 720).status > 0).any() and ls.peaks(scene).status == 1
+
+
+def test_a_yoke_along_its_guide_is_in_a_toggle_at_every_angle():
+    parts = {
+        "crank": ls.Link(0.08, 1.0, 0.01),
+        "yoke": ls.Slider(2.0, slot_angle=xr.DataArray([0.0, 90.0, 1e-14, 45.0], dims="design")),
+    }
+    machine = ls.Linkage(
+        "crank A-B, yoke on slide past B", ground={"A": (0.0, 0.0)}, guides={"slide": ls.Guide(angle=10.0)}, **parts
+    )
+    peaks = ls.peaks(ls.Scene(machine, 5.0), of=["F12"])
+    assert peaks.status.values.tolist() == [2, 0, 2, 0]
+    np.testing.assert_array_equal(np.isnan(peaks.F12_peak), peaks.status > 0)
