@@ -301,7 +301,7 @@ class Mechanism(ByContent, ABC):
 
     def ok_clear_of_toggles(self, drive: str) -> bool:
         """Return whether a design that is ok where it comes nearest to its toggles is ok at every angle."""
-        return False
+        return False  # where parts hardly move, noise hides near-toggles from a search
 
     def jumps(self) -> tuple[Number, ...]:
         """Return the crank angles [degree] at which a force may jump."""

@@ -72,12 +72,12 @@ Averages = dict[Power, Field]
 
 
 class Result(NamedTuple):
-    """Largest values and means, the scene at the angles that decide its status, and the assembly of each design: None
-    where it was not looked for. Where `by_samples`, a design that closes at none of them cannot be assembled."""
+    """Largest values and means, the scene at the angles that decide its status, and the assembly of each design, which
+    the samples alone decide where `by_samples`."""
 
     sampled: Scene
     grid: Grid
-    assembly: Field | None
+    assembly: Field
     by_samples: bool
     largest: dict[str, SignalPeak]
     averages: Averages
@@ -228,7 +228,7 @@ def _of_samples(scene: Scene, angles: ArrayLike, items: list[Request], threads: 
     averaged |= _over_time(sampled, grid, powers, pace[0], threads, solver) if pace else {}
     # a search for where designs close takes longer than samples, whose status shows enough
     by_samples = scene.table.limits is not None
-    assembly = None if by_samples else assembly_of(scene, threads)
+    assembly = Field((), np.zeros(())) if by_samples else assembly_of(scene, threads)
     return Result(sampled, grid, assembly, by_samples, extremes, averaged)
 
 
@@ -253,10 +253,9 @@ def status_of(scene: Scene, result: Result, threads: int | None) -> xr.Variable:
 
     Peaks and means of designs without any sample that is ok become NaN.
     """
-    sampled, grid, assembly, by_samples, largest, averages = result
-    status = Field((), np.zeros(())) if assembly is None else assembly
+    sampled, grid, status, by_samples, largest, averages = result
     if not surely_ok(scene):
-        samples = _extremes_of_status(scene, assembly, sampled, grid, threads)
+        samples = _extremes_of_status(scene, status, sampled, grid, threads)
         dims, (known, least, worst) = side_by_side((status, *samples))
         closes = (least < CANNOT_ASSEMBLE) | (worst > TOGGLE) | (not by_samples)
         known = np.where((worst > 0.0) & (known == 0.0), np.where(closes, float(PARTIAL), NEVER), known)
@@ -274,20 +273,18 @@ def status_of(scene: Scene, result: Result, threads: int | None) -> xr.Variable:
 
 
 def _extremes_of_status(
-    scene: Scene, assembly: Field | None, sampled: Scene, grid: Grid, threads: int | None
+    scene: Scene, assembly: Field, sampled: Scene, grid: Grid, threads: int | None
 ) -> tuple[Field, Field]:
     """Return the best and the worst status of each design's samples; NaN of designs whose assembly says enough."""
     least, worst = (empty(scene, ("status",))["status"] for _ in range(2))
-    if assembly is not None and grid.period > 0.0:
-        if (assembly.values == PARTIAL).all():  # no sample changes anything
-            return least, worst
-        # not of linkages: where parts hardly move, noise hides near-toggles from the search
-        known = scene.table.limits is None and scene.mechanism.ok_clear_of_toggles(scene.drive)
-        if known and not changes(scene, ("status",)):
-            for group, *numbers in _status_of_turning(scene, assembly, grid, threads):
-                at = flat_index(least, group.places, len(group.designs))
-                least.values.reshape(-1)[at], worst.values.reshape(-1)[at] = numbers
-            return least, worst
+    whole_cycle = grid.period > 0.0
+    if whole_cycle and (assembly.values == PARTIAL).all():  # no sample changes anything
+        return least, worst
+    if whole_cycle and scene.mechanism.ok_clear_of_toggles(scene.drive) and not changes(scene, ("status",)):
+        for group, *numbers in _status_of_turning(scene, assembly, grid, threads):
+            at = flat_index(least, group.places, len(group.designs))
+            least.values.reshape(-1)[at], worst.values.reshape(-1)[at] = numbers
+        return least, worst
     request = plan(scene.table, ("status",), sampled.inputs.forms)
     if any(grid.dim in sampled.inputs.fields[name].dims for name in request.inputs if name in sampled.inputs.fields):
         sampled = scene.at(grid)
