@@ -17,8 +17,12 @@ Facts = dict[str, str]
 VECTORS = {16: "AVX-512", 8: "AVX2", 4: "of two numbers"}
 """Names of vectors, by the number of samples that linksweep takes side by side."""
 WIDEST = VECTORS[max(VECTORS)]
-TRADE = re.compile(r"\((R|TM)\)|\b(Processor|CPU|\d+-Core)\b|@.*", re.IGNORECASE)
+TRADE = re.compile(r"\((R|TM)\)|\b(Processor|CPU|\d+-Core)\b|@[^,]*", re.IGNORECASE)
 """Parts of a processor's name to leave out: trade marks, the words that many share, the clock."""
+FACT = re.compile(r"^([^:]+?)\s*: (.+)$", re.MULTILINE)
+"""A line of /proc/cpuinfo: name and value."""
+NUMBERS = {"family": "cpu family", "model": "model"}
+"""Numbers that tell processors of one name apart, by what they are called there."""
 
 
 def machine() -> Facts:
@@ -39,16 +43,18 @@ def machine() -> Facts:
 def short_name(facts: Facts) -> str:
     """Return the processor's name without trade marks, and its vectors, if they are not the widest: processors of one
     name may differ in these."""
-    name = " ".join(TRADE.sub(" ", facts["processor"]).split()) or "unknown"
+    name = " ".join(TRADE.sub(" ", facts["processor"]).split()).replace(" ,", ",") or "unknown"
     return name if facts.get("vectors", WIDEST) == WIDEST else f"{name}, {facts['vectors']}"
 
 
 def _processor() -> str:
+    """Return the processor's name, with its family and model: virtual machines name several processors alike."""
     try:
-        model = re.search(r"^model name\s*:\s*(.+)$", Path("/proc/cpuinfo").read_text(), re.MULTILINE)
+        facts = dict(FACT.findall(Path("/proc/cpuinfo").read_text()))
     except OSError:
-        model = None
-    return model[1] if model else platform.processor() or platform.machine()
+        facts = {}
+    name = facts.get("model name") or platform.processor() or platform.machine()
+    return ", ".join([name, *(f"{number} {facts[key]}" for number, key in NUMBERS.items() if key in facts)])
 
 
 def _compiler() -> str:

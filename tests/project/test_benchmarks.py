@@ -188,6 +188,17 @@ def test_rows_of_two_processors_stand_side_by_side(tmp_path):
     ]
 
 
+def test_processors_of_one_name_have_columns_of_their_own():
+    clocked, masked, wide = (
+        {"processor": "Intel(R) Xeon(R) Processor @ 2.60GHz, family 6, model 143"},
+        {"processor": "AMD EPYC, family 23, model 1", "vectors": "AVX2"},
+        {"processor": "AMD EPYC, family 25, model 17", "vectors": "AVX-512"},
+    )
+    assert short_name(clocked) == "Intel Xeon, family 6, model 143"
+    assert short_name(masked) == "AMD EPYC, family 23, model 1, AVX2"
+    assert short_name(wide) == "AMD EPYC, family 25, model 17"
+
+
 def test_the_command_writes_its_table(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(front_door, "RESULTS", tmp_path / "RESULTS.md")
     monkeypatch.setattr(front_door, "QUICK", replace(QUICK))  # another size than that whose times mean nothing
