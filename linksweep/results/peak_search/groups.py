@@ -96,7 +96,7 @@ class Group(NamedTuple):
 def all_at_once(scene: Scene, designs: Array) -> Group:
     """Return designs as one group, of which only numbers of designs are computed."""
     places = places_of(scene.at_one_angle.inputs.sizes, designs)
-    return Group(scene, designs, places, np.empty(0), _limits(scene, places, len(designs)))
+    return Group(scene, designs, places, np.empty(0), _limits(scene, designs))
 
 
 @singledispatch
@@ -116,11 +116,12 @@ def groups(
     chosen = different(scene, names) if designs is None else designs
     turns = round(scene.period_of_motion / scene.mechanism.period)
     step = max(1, (min(at_once, own_at_once) if own else at_once) // turns)
+    limits = _limits(scene, chosen)  # of all groups at once: to find them, all numbers of all designs are read
     for first in range(0, len(chosen), step):
-        part = chosen[first : first + step]
-        places = places_of(inputs.sizes, part)
-        group = _with_own_loads(scene, places) if own else Group(scene, part, places, scene.quick.angles)
-        yield group._replace(limits=_limits(scene, places, len(part)))
+        part = slice(first, first + step)
+        places = places_of(inputs.sizes, chosen[part])
+        group = _with_own_loads(scene, places) if own else Group(scene, chosen[part], places, scene.quick.angles)
+        yield group._replace(limits=limits and limits.some(part))
 
 
 def assembled_groups(
@@ -151,13 +152,15 @@ def with_assembly_signals(scene: Scene, names: tuple[str, ...]) -> tuple[str, ..
     return tuple(chain.from_iterable(known.get(name, (name,)) for name in names))
 
 
-def _limits(scene: Scene, places: Places, count: int) -> Limits | None:
-    """Return the limits of `count` designs at these places; None where closed forms take their place."""
+def _limits(scene: Scene, designs: Array) -> Limits | None:
+    """Return the limits of these designs; None where closed forms take their place."""
     if scene.table.limits is None:
         return None
     sizes, limits = limits_of(scene.unloaded)
-    at = np.ravel_multi_index([places[dim] for dim in sizes], tuple(sizes.values())) if sizes else np.zeros(count, int)
-    return limits.some(at)
+    places = places_of(scene.at_one_angle.inputs.sizes, designs)
+    if not sizes:
+        return limits.some(np.zeros(len(designs), int))
+    return limits.some(np.ravel_multi_index([places[dim] for dim in sizes], tuple(sizes.values())))
 
 
 @singledispatch

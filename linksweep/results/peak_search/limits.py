@@ -89,7 +89,7 @@ class Limits(NamedTuple):
     near_toggle_width: Array
     zeros: Array
 
-    def some(self, rows: Array) -> Limits:
+    def some(self, rows: Array | slice) -> Limits:
         """Return the limits of the designs in these rows."""
         return Limits(*(table[rows] for table in self))
 

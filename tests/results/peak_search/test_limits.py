@@ -13,7 +13,8 @@ from benchmarks.accuracy import missed
 from linksweep.engine.peaks import laid_out
 from linksweep.engine.quantity import Limit, Row
 from linksweep.physics.algebra import planar
-from linksweep.results.peak_search.limits import find_limits
+from linksweep.results.peak_search.groups import groups
+from linksweep.results.peak_search.limits import find_limits, limits_of
 from linksweep.results.peak_search.side_by_side import Events, search_side_by_side
 from linksweep.scene.pairs import by_row, quantities_at, some_of
 
@@ -290,6 +291,20 @@ def test_limits_found_side_by_side_have_the_same_bits_among_any_others_and_inter
             same = some_of(alone, alone.row == k), some_of(every, every.row == design)
             for one, other in zip(same[0][1:], same[1][1:], strict=True):
                 np.testing.assert_array_equal(one, other)
+
+
+def test_limits_of_all_groups_are_looked_up_once():
+    """To look them up, all numbers of all designs are read: in each group of a study, time would grow as its square."""
+    scene = presses_near_toggles()
+    every = limits_of(scene.unloaded)[1]
+    before = limits_of.cache_info().hits
+    designs = np.arange(0, 150, 2)[::-1]
+    found = list(groups(scene, ("T12",), designs, at_once=20))
+    assert [len(group.designs) for group in found] == [20, 20, 20, 15]
+    assert limits_of.cache_info().hits == before + 1
+    for group in found:
+        for own, others in zip(group.limits, every.some(group.designs), strict=True):
+            np.testing.assert_array_equal(own, others)
 
 
 def test_a_ram_that_turns_round_three_times_within_a_degree():
