@@ -8,7 +8,6 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import xarray as xr
 
 from linksweep.base.validate import Number, Rule
 from linksweep.engine.run import Grid
@@ -43,5 +42,4 @@ def _of_function(path: str, function: Any, rule: Rule, grid: Grid, period: float
     own, width, noise = middle.values[:, None], np.radians(STEPS), ROUNDING * np.max(abs(middle.values))
     slope = limit((after - before) / (2.0 * width), np.broadcast_to(noise / width, before.shape))
     curvature = limit((after - own + before - own) / width**2, np.broadcast_to(4.0 * noise / width**2, before.shape))
-    slopes, curvatures = (xr.DataArray(values, {"theta2": grid.angles}, "theta2") for values in (slope, curvature))
-    return middle, slopes, curvatures
+    return middle, over_grid(slope, middle, grid), over_grid(curvature, middle, grid)

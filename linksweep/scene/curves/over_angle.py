@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from linksweep.base.frozen import cached_beside
 from linksweep.base.validate import Rule, is_quantity, number_problems, refuse
 from linksweep.engine.run import Grid
 from linksweep.scene.curves.interpolation import CUBIC, RINGING, OvershootWarning, PeriodicCurve
@@ -128,7 +129,7 @@ def called(path: str, function: Any, rule: Rule, angles: np.ndarray) -> xr.DataA
             f"{path}: the function returned shape {values.shape} for {len(angles)} angles; "
             f"it must return {rule.number} for each angle"
         )
-    sampled = xr.DataArray(np.broadcast_to(values, angles.shape), {"theta2": angles}, "theta2")
+    sampled = _labelled(angles).copy(deep=False, data=np.broadcast_to(values, angles.shape))
     refuse([f"{problem}; its function returned it" for problem in number_problems(path, sampled, rule)])
     return sampled.astype(float)
 
@@ -219,8 +220,21 @@ def knots(value: xr.DataArray) -> tuple[np.ndarray, np.ndarray]:
 def over_grid(values: np.ndarray, like: xr.DataArray, grid: Grid) -> xr.DataArray:
     """Return values at the grid's angles, theta2 as their first axis, as an array with the other dims of `like`."""
     others = [dim for dim in like.dims if dim != "theta2"]
+    if not others:
+        made = _labelled(grid.angles).copy(deep=False, data=values)
+        made.attrs.update(like.attrs)
+        return made
     labels = {dim: like[dim].variable for dim in others if dim in like.coords}
-    return xr.DataArray(values, {"theta2": grid.angles, **labels}, ("theta2", *others), attrs=like.attrs)
+    coordinates = _labelled(grid.angles).coords
+    return xr.DataArray(values, coordinates.assign(labels), ("theta2", *others), attrs=like.attrs)
+
+
+@cached_beside
+def _labelled(angles: np.ndarray) -> xr.DataArray:
+    """Return an array over these angles, whose index all arrays over them share: to make one takes xarray longer than
+    the rest of a curve."""
+    own = angles.copy()  # what is kept must not hold the object beside which it is kept
+    return xr.DataArray(own, {"theta2": own}, "theta2")
 
 
 def period_problems(

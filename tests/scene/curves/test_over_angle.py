@@ -207,6 +207,22 @@ def test_other_dims_are_interpolated_side_by_side():
     np.testing.assert_allclose(result.sum(axis=1), 2.0, atol=1e-12)
 
 
+@pytest.mark.parametrize("labels", [{}, {"design": ["a", "b"]}], ids=["of one design", "of labelled designs"])
+def test_interpolated_arrays_are_those_of_the_constructor_of_xarray(labels):
+    """Arrays over the same angles share an index, not their attributes."""
+    known = np.arange(0.0, 360.0, 30.0)
+    values = np.outer(np.sin(np.radians(known)), [1.0, 2.0]) if labels else np.sin(np.radians(known))
+    dims, attributes, grid = ("theta2", *labels), {"source": "a test rig"}, crank_grid(50, 360.0)
+    array = xr.DataArray(values, {"theta2": known, **labels}, dims, attrs=attributes)
+    curve = ArrayCurve("torque", array, 360.0)
+    first, second = (at_angles("torque", array, TORQUE, grid, curve) for _ in range(2))
+    expected = xr.DataArray(curve.periodic(grid.angles), {"theta2": grid.angles, **labels}, dims, attrs=attributes)
+    assert first.identical(expected)
+    first.attrs["source"] = "another"
+    assert second.identical(expected)
+    assert first.xindexes["theta2"].index is second.xindexes["theta2"].index
+
+
 def test_a_function_gets_its_own_copy_of_the_angles():
     def careless(theta2):
         theta2 *= 0.0
