@@ -299,10 +299,10 @@ def test_limits_of_all_groups_are_looked_up_once():
     every = limits_of(scene.unloaded)[1]
     before = limits_of.cache_info().hits
     designs = np.arange(0, 150, 2)[::-1]
-    found = list(groups(scene, ("T12",), designs, at_once=20))
-    assert [len(group.designs) for group in found] == [20, 20, 20, 15]
+    parts = list(groups(scene, ("T12",), designs, at_once=20))
+    assert [len(group.designs) for group in parts] == [20, 20, 20, 15]
     assert limits_of.cache_info().hits == before + 1
-    for group in found:
+    for group in parts:
         for own, others in zip(group.limits, every.some(group.designs), strict=True):
             np.testing.assert_array_equal(own, others)
 
