@@ -19,10 +19,10 @@ VECTORS = {16: "AVX-512", 8: "AVX2", 4: "of two numbers"}
 WIDEST = VECTORS[max(VECTORS)]
 TRADE = re.compile(r"\((R|TM)\)|\b(Processor|CPU|\d+-Core)\b|@[^,]*", re.IGNORECASE)
 """Parts of a processor's name to leave out: trade marks, the words that many share, the clock."""
-FACT = re.compile(r"^([^:]+?)\s*: (.+)$", re.MULTILINE)
+FACT = re.compile(r"^([^:\n]+?)[ \t]*: (.+)$", re.MULTILINE)
 """A line of /proc/cpuinfo: name and value."""
 NUMBERS = {"family": "cpu family", "model": "model"}
-"""Numbers that tell processors of one name apart, by what they are called there."""
+"""Numbers that tell processors of one name apart, and the names of their lines."""
 
 
 def machine() -> Facts:

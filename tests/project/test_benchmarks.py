@@ -10,7 +10,7 @@ from long import long_but
 import linksweep as ls
 from benchmarks import __main__ as front_door
 from benchmarks.cases import ALL, GENERAL, LENGTHS, QUICK, batch
-from benchmarks.machine import machine, short_name
+from benchmarks.machine import FACT, machine, short_name
 from benchmarks.report import Run, from_json, keep, page, section
 from benchmarks.rivals import limit, peers
 from benchmarks.speed import hard_peaks
@@ -197,6 +197,12 @@ def test_processors_of_one_name_have_columns_of_their_own():
     assert short_name(clocked) == "Intel Xeon, family 6, model 143"
     assert short_name(masked) == "AMD EPYC, family 23, model 1, AVX2"
     assert short_name(wide) == "AMD EPYC, family 25, model 17"
+
+
+def test_facts_of_a_processor_are_read_line_by_line():
+    """A line without a value, before another or an empty one, has no part in the next line's name."""
+    text = "power management:\n\ncpu family\t: 23\nmicrocode:\nmodel\t\t: 1\nmodel name\t: AMD EPYC\n"
+    assert dict(FACT.findall(text)) == {"cpu family": "23", "model": "1", "model name": "AMD EPYC"}
 
 
 def test_the_command_writes_its_table(tmp_path, capsys, monkeypatch):
