@@ -6,14 +6,13 @@ import math
 import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any, Self
 
 import numpy as np
 
 from linksweep.base.equality import ByContent
 from linksweep.base.fields import POLAR_POINT, PairField, declared, field_problems, of_kind, word
-from linksweep.base.frozen import normalise, with_sound
+from linksweep.base.frozen import bare, cached_property, normalise, with_sound
 from linksweep.base.records import NamedField, Record, named, record
 from linksweep.base.validate import Number, Rule, closest, did_you_mean, is_array, is_lazy, name_problems, quote, refuse
 from linksweep.chains.gears import Geared
@@ -27,7 +26,7 @@ from linksweep.mechanisms.linkage_numbers import (
     cylinder_numbers,
     gear_numbers,
     ground_pin,
-    guide_numbers,
+    guide_line,
     point_on_link,
     slot_numbers,
 )
@@ -206,7 +205,7 @@ class Linkage(Machine):
 
     def _between_floats(self) -> frozenset[str]:
         """Return the ground pins and guides whose distance from the crank's pivot is no float in every design."""
-        numbers = self._numbers_of_places()
+        numbers = bare(self)._numbers_of_places()
         low_words = {pin: numbers[f"{pin}_distance_lo"] for pin in [*self.ground][1:]}
         low_words |= {name: numbers[f"{name}_offset_lo"] for name in self.topology.hosts}
         return frozenset(name for name, low_word in low_words.items() if is_lazy(low_word) or np.any(low_word))
@@ -302,11 +301,13 @@ class Linkage(Machine):
         (_, pivot), *others = self.ground.items()
         numbers: dict[str, Any] = {}
         for pin, point in others:
-            numbers |= ground_pin(pin, point, pivot)
+            numbers |= ground_pin(pin, *point, *pivot)
         for pin in self.topology.points:
             numbers |= point_on_link(pin, *self.points[pin])
         for name, host in self.topology.hosts.items():
-            numbers |= guide_numbers(name, self.guides.get(name, Guide()), pivot if host == GROUND else ORIGIN)
+            guide = self.guides.get(name, Guide())
+            numbers |= guide_line(name, guide.angle, *guide.through, *(pivot if host == GROUND else ORIGIN))
+            numbers[f"{name}_friction"] = guide.friction
         for path, branch in self.branches.items():
             numbers |= branch_sign(path.removeprefix("branch."), branch)
         return numbers

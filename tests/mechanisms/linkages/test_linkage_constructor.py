@@ -298,6 +298,31 @@ def test_arrays_broadcast_by_name():
         )
 
 
+@pytest.mark.parametrize("dims", [["design"] * 4, ["a", "b", "a", "c"]])
+def test_places_over_designs_have_the_bits_of_each_design(dims):
+    values = [0.2, 0.3], [0.1, -0.2], [0.01, 0.03], [20.0, 33.0]
+    x, y, height, angle = (xr.DataArray(pair, dims=dim) for pair, dim in zip(values, dims, strict=True))
+
+    def places(x, y, height, angle):
+        on_link = press(ground={**GROUND, "D": (x, y)}, points={"E": (0.12, angle)})
+        return bare(on_link).parameters() | bare(pump(guides={"slide": ls.Guide((0.0, height), angle)})).parameters()
+
+    numbers = places(x, y, height, angle)
+    assert numbers["Dx"].dims == (dims[0],) and numbers["slide_cos"].dims == (dims[3],)
+    over_designs = {name: number for name, number in numbers.items() if hasattr(number, "dims")}
+    assert {*numbers["D_cos_lo"].dims} == {*dims[:2]} and {*numbers["slide_offset_lo"].dims} == {*dims[2:]}
+    for k in range(2):
+        single = places(*(pair[k] for pair in values))
+        assert all(number.isel(dict.fromkeys(number.dims, k)) == single[name] for name, number in over_designs.items())
+
+
+def test_places_over_one_dim_are_computed_without_it(monkeypatch):
+    x, y, angle = (xr.DataArray(values, dims="design") for values in ([0.2, 0.3], [0.1, -0.2], [20.0, 33.0]))
+    monkeypatch.setattr(xr.Variable, "_binary_op", None)
+    press(ground={**GROUND, "D": (x, y)}, points={"E": (x, angle)}).shape  # noqa: B018
+    pump(guides={"slide": ls.Guide((x, y), angle)}).shape  # noqa: B018
+
+
 def test_lengths_of_cylinders_have_derivatives_of_zero_unless_they_change():
     numbers = boom(ls.Cylinder(0.9)).parameters()
     names = ("c1_length", "c1_length_slope", "c1_length_curvature")
