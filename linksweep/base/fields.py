@@ -324,7 +324,7 @@ def numbers(owner: Any, prefix: str = "") -> Numbers:
         if type(value) in PLAIN:  # most fields: one look is enough
             if type(kind) is NumberField:
                 listed.append((prefix + name, value, kind.rule.kind))
-        elif type(kind) is PairField and type(value) is tuple and {*map(type, value)} == {float}:
+        elif type(kind) is PairField and type(value) is tuple and [*map(type, value)] == [float, float]:
             pair = zip((1, 2), value, kind.numbers, strict=True)
             listed += [(f"{prefix}{name}[{k}]", item, each.rule.kind) for k, item, each in pair]
         else:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -56,12 +56,8 @@ def dimension_problems(arrays: Arrays, index: str, quantities: Collection[str]) 
     quantities : collection of str
         Names of the quantities of the scene.
     """
-    by_dim: dict[object, Arrays] = {}
-    for path, array in arrays.items():
-        for dim in array.dims:
-            by_dim.setdefault(dim, {})[path] = array
     problems: list[str] = []
-    for dim, sharing in by_dim.items():
+    for dim, sharing in _by_dim(arrays).items():
         if dim == index:
             continue
         if name_problems := list(_name_problems(dim, index, sharing, arrays, {*quantities, *TABLES})):
@@ -69,6 +65,23 @@ def dimension_problems(arrays: Arrays, index: str, quantities: Collection[str]) 
         else:
             problems += [*_length_problems(dim, sharing), *_label_problems(dim, sharing, arrays)]
     return problems
+
+
+def length_problems(numbers: Mapping[str, tuple[Any, str]], index: str) -> list[str]:
+    """Return why arrays of a machine and its motion, among the numbers of a scene, do not fit together: a line for each
+    whose length along a dim, but the index, differs from that of the first. Nothing can be computed of such ones."""
+    arrays = {path: number for path, (number, _) in numbers.items() if isinstance(number, xr.DataArray)}
+    by_dim = _by_dim({path: array for path, array in arrays.items() if not path.startswith("loads[")}).items()
+    return [line for dim, sharing in by_dim if dim != index for line in _length_problems(dim, sharing)]
+
+
+def _by_dim(arrays: Arrays) -> dict[object, Arrays]:
+    """Return the arrays over each dim."""
+    by_dim: dict[object, Arrays] = {}
+    for path, array in arrays.items():
+        for dim in array.dims:
+            by_dim.setdefault(dim, {})[path] = array
+    return by_dim
 
 
 def _name_problems(dim: object, index: str, sharing: Arrays, arrays: Arrays, results: Collection[str]) -> Iterator[str]:

@@ -31,7 +31,7 @@ from linksweep.engine.run import Grid
 from linksweep.mechanisms import MECHANISMS, Mechanism
 from linksweep.scene.curves.over_angle import ArrayCurve, period_of, period_of_function, turning_problems
 from linksweep.scene.curves.quick import Quick, quick_angles
-from linksweep.scene.dimensions import dimension_problems, index_problems, interpolation_problems
+from linksweep.scene.dimensions import dimension_problems, index_problems, interpolation_problems, length_problems
 from linksweep.scene.grid import crank_grid
 from linksweep.scene.inputs import Inputs, engine_inputs
 from linksweep.scene.loads.action import LOADS, Action
@@ -135,9 +135,8 @@ class Scene(ByContent):
         # omega2 is a result by that name, too; the speed of a loop's results is another than the parameter
         results = self.table.quantity.keys() - (self.motion.keys() & self.arrays.keys())
         taken = {*results, *self.mechanism.both_branches}
-        refuse(
-            index_problems(self.arrays, self.mechanism) + dimension_problems(self.arrays, self.mechanism.index, taken)
-        )
+        arrays, machine = self.arrays, self.mechanism
+        refuse(index_problems(arrays, machine) + dimension_problems(arrays, machine.index, taken))
 
     def _defaults(self) -> dict[str, Any]:
         return super()._defaults() | dict(self.mechanism.defaults)
@@ -169,7 +168,8 @@ class Scene(ByContent):
         ]
         if left_out(values[required]):
             problems.append(f"{required}: missing; give {kind} {field_rules(Scene)[required].number}")
-        choices = machine.choices().items()
+        problems += (misfits := length_problems(self.numbers, machine.index))
+        choices = () if misfits else machine.choices().items()
         return problems + [p for name, allowed in choices for p in choice_problems(name, values[name], allowed)]
 
     def _load_problems(self) -> list[str]:

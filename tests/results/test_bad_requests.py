@@ -19,6 +19,13 @@ def two(length, mass, **changes) -> ls.Scene:
     return replace(SCENE, mechanism=replace(FOUR_BAR, coupler=replace(LINK, length=length, mass=mass)), **changes)
 
 
+def six_bar(ground, **changes) -> ls.Scene:
+    example = ls.example("watt-2")
+    return replace(
+        example, mechanism=replace(example.mechanism, ground={**example.mechanism.ground, **ground}), **changes
+    )
+
+
 @pytest.mark.parametrize(
     ("change", "messages"),
     [
@@ -27,6 +34,17 @@ def two(length, mass, **changes) -> ls.Scene:
             [
                 "coupler.mass has 3 values along design, but coupler.length has 2: "
                 "one dimension has one length; give them the same, or rename one"
+            ],
+        ),
+        (  # whether a four-bar is a parallelogram depends on all its lengths, those of a pin on both its coordinates
+            lambda: four_bar(ground=array(0.2, 0.21), coupler=replace(LINK, length=array(0.2, 0.21, 0.22))),
+            ["ground has 2 values along design, but coupler.length has 3: one dimension"],
+        ),
+        (
+            lambda: six_bar(ground={"D": (array(0.2, 0.21), array(0.0, 0.1, 0.2))}, omega2="fast"),
+            [
+                'omega2 = "fast": must be',
+                "ground.D[2] has 3 values along design, but ground.D[1] has 2: one dimension",
             ],
         ),
         (
