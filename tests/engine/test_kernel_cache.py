@@ -12,10 +12,13 @@ import pytest
 from numba.core.compiler import Compiler
 
 import linksweep as ls
+from benchmarks.speed.kernel import way
 from linksweep.base import cache
 from linksweep.engine import run
 from linksweep.engine.kernel import compile as kernels
 from linksweep.engine.kernel import numba_code
+from linksweep.engine.kernel.instructions import REGISTER as LANES
+from linksweep.engine.peaks import laid_out
 from linksweep.engine.trace.plan import plan
 
 SOURCE = "import math\n\n\ndef kernel(x):\n    x[0] = math.sqrt(x[0])\n"
@@ -54,6 +57,31 @@ def test_a_second_process_finds_the_compiled_kernel(folder):
     forget()
     assert root_of_two() == math.sqrt(2)
     assert kept(folder).stat().st_mtime_ns == written
+
+
+def test_a_search_takes_code_that_is_kept_from_the_second_design_on(folder, monkeypatch):
+    """Else a second process would interpret forty designs, as the first one, before it looked for the code."""
+    run_search, lanes = laid_out.LaidOut.run, []
+
+    def noted(designs, search, kinds):
+        lanes.append(designs.lanes)
+        return run_search(designs, search, kinds)
+
+    def lanes_of(calls):
+        laid_out.evaluators_of.cache_clear()  # as in a new process
+        lanes.clear()
+        for _ in range(calls):
+            ls.peaks(ls.example("press"), of="T12")
+        return lanes
+
+    monkeypatch.setattr(laid_out.LaidOut, "run", noted)
+    assert lanes_of(2) == [1, 1]
+    with way("compiled"):
+        assert lanes_of(1) == [LANES]
+    assert lanes_of(3) == [1, LANES, LANES]
+    for path in folder.glob("*sample_*"):
+        path.write_bytes(path.read_bytes()[:-1])
+    assert lanes_of(2) == [1, 1]
 
 
 def test_kernels_are_compiled_where_numba_is_told_not_to_compile(folder, monkeypatch):

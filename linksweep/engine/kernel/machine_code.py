@@ -125,13 +125,7 @@ def machine_code(emit: Callable[..., Any], kinds: tuple[str, ...], text: str) ->
     body does."""
     from llvmlite import binding
 
-    binding.initialize_native_target()
-    binding.initialize_native_asmprinter()
-    cpu, features = processor()
-    triple = binding.Target.from_default_triple()
-    target = triple.create_target_machine(cpu, features, opt=3)
-    made_of = f"{binding.llvm_version_info} {target.triple} {cpu} {features} {SOURCE} {kinds} {text}"
-    name = f"{emit.__name__.strip('_')}_{hashlib.sha256(made_of.encode()).hexdigest()[:24]}"
+    target, name = _target(), _name(emit, kinds, text)
     code = recall(name)
     if code is None:
         code = target.emit_object(_optimised(target, emit, name, kinds))
@@ -140,6 +134,29 @@ def machine_code(emit: Callable[..., Any], kinds: tuple[str, ...], text: str) ->
     engine.add_object_file(binding.ObjectFileRef.from_data(code))
     engine.finalize_object()
     return MachineCode(engine, engine.get_function_address(name), kinds)
+
+
+def is_kept(emit: Callable[..., Any], kinds: tuple[str, ...], text: str) -> bool:
+    """Return whether the machine code of this function is kept on disk."""
+    return recall(_name(emit, kinds, text)) is not None
+
+
+def _name(emit: Callable[..., Any], kinds: tuple[str, ...], text: str) -> str:
+    """Return the name of a function, which covers all that enters its machine code."""
+    from llvmlite import binding
+
+    made_of = f"{binding.llvm_version_info} {_target().triple} {' '.join(processor())} {SOURCE} {kinds} {text}"
+    return f"{emit.__name__.strip('_')}_{hashlib.sha256(made_of.encode()).hexdigest()[:24]}"
+
+
+def _target() -> Any:
+    """Return what LLVM compiles for."""
+    from llvmlite import binding
+
+    binding.initialize_native_target()
+    binding.initialize_native_asmprinter()
+    cpu, features = processor()
+    return binding.Target.from_default_triple().create_target_machine(cpu, features, opt=3)
 
 
 def processor() -> tuple[str, str]:

@@ -34,7 +34,7 @@ from typing import Any, NamedTuple
 
 from linksweep.engine.kernel.instructions import REGISTER as LANES
 from linksweep.engine.kernel.instructions import Instructions
-from linksweep.engine.kernel.machine_code import INTEGER, INTEGERS, ROW, TABLE, MachineCode, machine_code
+from linksweep.engine.kernel.machine_code import INTEGER, INTEGERS, ROW, TABLE, MachineCode, is_kept, machine_code
 from linksweep.engine.patience import Patience
 from linksweep.engine.peaks.interpreted import Interpreted
 from linksweep.engine.peaks.lanewise import Values
@@ -64,6 +64,7 @@ SOON = 2 * LANES
 """Designs from the first lane's to one whose parameters are fetched into the caches: that of the lanes after the next.
 """
 
+Written = tuple[Callable[..., Any], tuple[str, ...], str]
 Pairs = Iterator[tuple[Any, Any, Values, Values]]
 """Half turn and number of a sample from its middle on, and the values there and at its mirror."""
 
@@ -151,17 +152,25 @@ class Evaluators(Patience):
     @cached_property
     def compiled(self) -> Functions:
         """The functions as machine code, for `LANES` lanes."""
+        functions = {name: machine_code(*written) for name, written in self._written.items()}
+        return Functions(LANES, len(self.constants), 4 * (HALF + 1) * len(self.shared), **functions)
+
+    @cached_property
+    def are_kept(self) -> bool:
+        """Whether the machine code of all functions is kept on disk."""
+        return all(is_kept(*written) for written in self._written.values())
+
+    @cached_property
+    def _written(self) -> dict[str, Written]:
+        """What each function of machine code is written by: what emits its body, kinds of arguments, and text."""
         text, of_designs = self._text(), (INTEGER, INTEGER, INTEGERS, ROW, INTEGERS, ROW)
-        return Functions(
-            LANES,
-            len(self.constants),
-            4 * (HALF + 1) * len(self.shared),
-            machine_code(self._emit_prepare, of_designs, text),
-            machine_code(self._emit_share, (ROW, ROW), text if self.shared else ""),
-            machine_code(self._emit_sample, (ROW, ROW, ROW), text),
-            machine_code(self._emit_evaluate, (ROW, TABLE, *[INTEGER] * 6), text),
-            machine_code(self._emit_enter, of_designs, text) if PIECE in self.dims else None,
-        )
+        functions: dict[str, Written] = {
+            "prepare": (self._emit_prepare, of_designs, text),
+            "share": (self._emit_share, (ROW, ROW), text if self.shared else ""),
+            "sample": (self._emit_sample, (ROW, ROW, ROW), text),
+            "evaluate": (self._emit_evaluate, (ROW, TABLE, *[INTEGER] * 6), text),
+        }
+        return functions | ({"enter": (self._emit_enter, of_designs, text)} if PIECE in self.dims else {})
 
     def _emit_prepare(self, builder: Any, front: Any, designs: Any, sizes: Any, *arrays: Any) -> None:
         """Emit the constants of designs side by side; lanes beyond the last design repeat it."""

@@ -18,8 +18,9 @@ from linksweep.engine.run import Fields, Sizes, flat, ordered, over_threads
 from linksweep.engine.trace.plan import Plan
 
 WIDTHS = (NEAR_WIDTH, FAR_WIDTH)
-INTERPRETED_DESIGNS = 40
-"""Designs interpreted before a plan's kernel is compiled."""
+INTERPRETED_DESIGNS, LOADING = 40, 1 / 40
+"""Designs interpreted before a plan's kernel is compiled, and the share of them before it is loaded where it is kept.
+"""
 DESIGNS_PER_THREAD = 1000
 """Designs that pay for another thread."""
 OF_DESIGNS = (INTEGERS, ROW, INTEGERS, TABLE, *[INTEGER] * 4, TABLE, ROW, ROW)
@@ -96,7 +97,8 @@ def laid_out(plan: Plan, inputs: Fields, sizes: Sizes, half: int = HALF, evenly:
     evaluators = evaluators_of(plan, signals)
     shape = tuple(sizes[dim] for dim in evaluators.dims)
     parameters, parameter_at = flat([ordered(plan, inputs[node.value]) for node in evaluators.inputs])
-    interpret = evaluators.should_interpret(math.prod(shape), INTERPRETED_DESIGNS)
+    most = INTERPRETED_DESIGNS * (LOADING if evaluators.are_kept else 1)
+    interpret = evaluators.should_interpret(math.prod(shape), most)
     functions = evaluators.interpreted if interpret else evaluators.compiled
     return LaidOut(signals, functions, shape, (parameters, parameter_at[:-1]), half, evenly)
 
