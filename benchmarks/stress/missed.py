@@ -11,6 +11,7 @@ import argparse
 import sys
 from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
 
 from benchmarks.accuracy.missed import CHUNK, FAMILIES, Missed, search
 
@@ -26,7 +27,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     sizes = [min(CHUNK, options.designs - k) for k in range(0, options.designs, CHUNK)]
     seeds = [options.seed * 1_000_000 + k for k in range(len(sizes))]
     missed = 0
-    with ProcessPoolExecutor(options.processes) as pool:
+    with ProcessPoolExecutor(options.processes, get_context("spawn")) as pool:
         for kind in (kind for kind in FAMILIES if options.only in kind):
             parts = list(pool.map(check, [kind] * len(sizes), sizes, seeds))
             designs, count = sum(part.designs for part in parts), sum(part.count for part in parts)

@@ -15,6 +15,7 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from fractions import Fraction
 from functools import partial
+from multiprocessing import get_context
 from time import perf_counter
 from typing import NamedTuple
 
@@ -319,7 +320,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     kinds = [kind for kind in (*KINDS, *OTHERS) if options.only in kind] if options.only else list(KINDS)
     jobs = list(chunks(kinds, options.designs, options.seed))
     totals = dict.fromkeys(kinds, Result())
-    with ProcessPoolExecutor(options.processes) as pool:
+    with ProcessPoolExecutor(options.processes, get_context("spawn")) as pool:
         for (kind, _, seed), result in zip(jobs, pool.map(check, *zip(*jobs, strict=True)), strict=True):
             totals[kind] += result
             if result.missed or result.wrong_arcs:

@@ -94,7 +94,7 @@ STEPS = ("mkdir", "open", "fsync", "replace", "unlink", "rmdir")
 def dies_at(step: int, path: Path) -> bool:
     """Run a study of three chunks in a process that dies at a step on files; return whether it died."""
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", DeprecationWarning)  # steps of other threads do not count
+        warnings.simplefilter("ignore")  # the child lacks the other threads, whose steps do not count
         child = os.fork()
     if child:
         return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 9

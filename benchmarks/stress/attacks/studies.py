@@ -18,8 +18,8 @@ from benchmarks.stress.attacks import Outcome
 TITLE = "a study of three million designs: bounded memory, and rows equal to designs alone, to the bit"
 ROUNDS, SMALL = 3_000_000, 40
 
-MOST_MEMORY = 1.5e9
-"""Most bytes of a process that computes a study of any size."""
+MOST_MEMORY = 1.5
+"""Most memory of a process that computes a study of any size [GB]."""
 ROWS = 40
 CHUNKS = 4
 """Designs per chunk of a small study, at least; a large one has chunks of the default size."""
@@ -38,18 +38,17 @@ def attack(random: np.random.Generator, rounds: int) -> Outcome:
         with ls.open_study(path) as study:
             rows = random.choice(rounds, min(ROWS, rounds // 4), replace=False)
             failures = [failure for row in rows.tolist() for failure in _different(study, row)]
-    failures += [f"the process takes {memory / 1e9:.2f} GB"] * (memory > MOST_MEMORY)
+    failures += [f"the process takes {memory:.2f} GB"] * (memory > MOST_MEMORY)
     return Outcome(rounds, failures)
 
 
 def run(path: str, designs: int, seed: int) -> None:
-    """Compute the study, and print the peak memory of this process [byte]."""
-    import resource  # not available on Windows
+    """Compute the study, and print the peak memory of this process [GB]."""
+    from benchmarks.speed.growth import peak_memory  # here: not available on Windows
 
     scene = ls.sample(ls.example("press"), SPREAD, n=designs, seed=seed)
     ls.study(scene, path, of=OF, chunk=max(1, designs // CHUNKS) if designs < 1000 else None).close()
-    kilobytes = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    print(kilobytes * (1 if sys.platform == "darwin" else 1024))
+    print(peak_memory())
 
 
 def _different(study: xr.Dataset, row: int) -> Iterator[str]:
