@@ -15,20 +15,12 @@ from references import LinkData, LoadData, mp
 
 import linksweep as ls
 from benchmarks.accuracy import digits as accuracy
-from benchmarks.speed.kernel import way
 from benchmarks.stress import __main__ as front_door
 from benchmarks.stress import conservative, errors, missed, six_bars
 from benchmarks.stress.designs import FORCES, LINKS, Designs
 from benchmarks.stress.errors import errors_of
 from benchmarks.stress.families import FAMILIES, chunks
 from benchmarks.stress.tally import Tally
-
-
-@pytest.fixture(autouse=True)
-def uncompiled():
-    """Run uncompiled: equal numbers (see test_bits) without compile time."""
-    with way("interpreted"):
-        yield
 
 
 def drawn(family: str, count: int, seed: int = 7) -> Designs:
@@ -72,10 +64,12 @@ def test_mean_torque_of_conservative_machines_is_zero():
     assert means.max() < 10.0
 
 
+SIX_BARS = [*six_bars.KINDS, *six_bars.OTHERS]
 SHORT = "watt", "Whitworth", "Jansen leg", "scotch yoke, both slides rub"
+DRIVEN_ELSEWHERE = [kind for kind in SIX_BARS if kind.endswith(" drives")]
 
 
-@pytest.mark.parametrize("kind", long_but([*six_bars.KINDS, *six_bars.OTHERS], *SHORT))
+@pytest.mark.parametrize("kind", long_but(SIX_BARS, *SHORT, nightly=DRIVEN_ELSEWHERE))
 def test_no_peak_of_six_bars_is_missed_and_their_arcs_are_right(kind):
     result = six_bars.check(kind, 15, [2026])
     assert result.designs == 15

@@ -8,16 +8,9 @@ import xarray as xr
 
 import linksweep as ls
 from benchmarks.accuracy import missed
-from benchmarks.speed.kernel import way
 
 DESIGNS = 40
 LENGTHS = {"crank": 0.08, "coupler": 0.22, "rocker": 0.18, "rod": 0.20, "output": 0.15}
-
-
-@pytest.fixture(autouse=True)
-def uncompiled():
-    with way("interpreted"):
-        yield
 
 
 def scene_of(name):

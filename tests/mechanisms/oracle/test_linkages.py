@@ -1,6 +1,6 @@
 """Random linkages of every family agree with multibody equations in 50 digits.
 
-Ten of each, fifty with the long tests; a thousand: ``python -m benchmarks.stress.linkages --designs 1000``.
+Ten of each, thirty every night; a thousand: ``python -m benchmarks.stress.linkages --designs 1000``.
 """
 
 from dataclasses import replace
@@ -24,7 +24,7 @@ def uncompiled():
         yield
 
 
-@pytest.mark.parametrize("designs", long_but([10, 30], 10))
+@pytest.mark.parametrize("designs", long_but([10, 30], 10, nightly=[30]))
 @pytest.mark.parametrize("name", ALL)
 def test_linkages_reach_the_goals(name, designs):
     figures = [errors.errors_of(solution) for solution in front_door.solutions(name, designs, 2026, at_once=5)]
