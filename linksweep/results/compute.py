@@ -176,18 +176,23 @@ def known_names(scene: Scene, names: tuple[str, ...], known: Callable[[str], str
     `known` is `where_ok` or `unless_jammed`. A quantity that lacks dims of the status keeps its own name: designs that
     share it may differ in status. So does one that has no value itself where the status is not ok.
     """
-    plans = {name: plan(scene.table, (name, known(name)), scene.inputs.forms) for name in names}
-    same = {name: len({node.dims for node in request.outputs.values()}) == 1 for name, request in plans.items()}
-    return {name: known(name) if same[name] and not shows_status(scene, name) else name for name in names}
+    shown = showing_status(scene, names)
+    others = tuple(name for name in names if name not in shown)
+    of_request = plan(scene.table, (*others, *map(known, others)), scene.inputs.forms).outputs
+    same = {name for name in others if of_request[name].dims == of_request[known(name)].dims}
+    return {name: known(name) if name in same else name for name in names}
 
 
-def shows_status(scene: Scene, name: str) -> bool:
-    """Return whether a quantity has a value only where the status is ok: always, or because it depends on all that the
-    status does, of a machine whose closed forms have no value beyond."""
+def showing_status(scene: Scene, names: tuple[str, ...]) -> set[str]:
+    """Return those of some quantities that have a value only where the status is ok: all do where it always is; others
+    depend on all that the status does, of a machine whose closed forms have no value beyond."""
     if surely_ok(scene):
-        return True
-    status, own = (plan(scene.table, (each,), scene.inputs.forms).inputs for each in ("status", name))
-    return scene.table.limits is None and set(status) <= set(own)
+        return {*names}
+    if scene.table.limits is not None:
+        return set()
+    request = plan(scene.table, ("status", *names), scene.inputs.forms)
+    inputs = {name: {*request.only((name,)).inputs} for name in request.outputs}
+    return {name for name in names if inputs["status"] <= inputs[name]}
 
 
 def names_unless_jammed(scene: Scene, names: tuple[str, ...]) -> dict[str, str]:

@@ -25,7 +25,7 @@ from linksweep.results.compute import (
     only_where,
     planned,
     quantity_problems,
-    shows_status,
+    showing_status,
     surely_ok,
 )
 from linksweep.results.dataset import design_coordinates, flags, plain, provenance, variable
@@ -210,7 +210,8 @@ def _of_samples(scene: Scene, angles: ArrayLike, items: list[Request], threads: 
     sampled = scene.at(grid)
     signals, powers = needed(items)
     of_ok = known_names(sampled, tuple(name for name, _ in powers), where_ok)
-    known_signals = {signal: signal if shows_status(sampled, signal) else where_ok(signal) for signal in signals}
+    shown = showing_status(sampled, signals)
+    known_signals = {signal: signal if signal in shown else where_ok(signal) for signal in signals}
     largest = {signal: Reduction("largest_sample", known_signals[signal]) for signal in signals}
     pace = changing_pace(sampled)
     averages = {} if pace else {p: Reduction(("mean", "mean_square")[p[1] - 1], of_ok[p[0]]) for p in powers}

@@ -117,8 +117,8 @@ def rubbing_signals(scene: Scene, signals: tuple[str, ...]) -> tuple[str, ...]:
     known = {on_piece(name) for name in machine.directions()}
     forms = (*scene.inputs.forms, *((name, ()) for name in (*known, *ENDS, HALF_TURN, *WIDTHS, ALONG, END)))
     table = _table_on_pieces(scene.table, machine.directions())
-    inputs_of = {signal: plan(table, (signal,), forms).inputs for signal in signals}
-    return tuple(signal for signal, inputs in inputs_of.items() if not known.isdisjoint(inputs))
+    request = plan(table, signals, forms)
+    return tuple(signal for signal in signals if not known.isdisjoint(request.only((signal,)).inputs))
 
 
 def known_on_pieces(scene: Scene) -> bool:

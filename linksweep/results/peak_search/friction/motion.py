@@ -11,7 +11,7 @@ import xarray as xr
 
 from linksweep.engine.quantity import where_ok
 from linksweep.engine.run import Field
-from linksweep.results.compute import shows_status
+from linksweep.results.compute import showing_status
 from linksweep.results.peak_search.along_paths import SignalPeak
 from linksweep.results.peak_search.between import NEVER
 from linksweep.results.peak_search.exact import of_designs_that_share, peaks_along_paths, peaks_where, peaks_within
@@ -28,7 +28,8 @@ def of_free_angles(
     A design that is free at all angles keeps its peaks, whichever others stand beside it.
     """
     sampled = scene.at_one_angle
-    motion = {s: where_ok(s) for s in peaks if scene.mechanism.rubs and not shows_status(sampled, s)}
+    shown = showing_status(sampled, tuple(peaks)) if scene.mechanism.rubs else peaks
+    motion = {signal: where_ok(signal) for signal in peaks if signal not in shown}
     jammed = jams(scene).values if motion else np.zeros((), dtype=bool)
     if not jammed.any():
         return peaks
