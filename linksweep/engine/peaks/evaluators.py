@@ -64,7 +64,9 @@ SOON = 2 * LANES
 """Designs from the first lane's to one whose parameters are fetched into the caches: that of the lanes after the next.
 """
 
-Written = tuple[Callable[..., Any], tuple[str, ...], str]
+Writing = tuple[Callable[..., Any], tuple[str, ...], str]
+"""How a function of machine code is written: what emits its body, the kinds of its arguments, and a text that differs
+wherever the body does."""
 Pairs = Iterator[tuple[Any, Any, Values, Values]]
 """Half turn and number of a sample from its middle on, and the values there and at its mirror."""
 
@@ -152,19 +154,19 @@ class Evaluators(Patience):
     @cached_property
     def compiled(self) -> Functions:
         """The functions as machine code, for `LANES` lanes."""
-        functions = {name: machine_code(*written) for name, written in self._written.items()}
+        functions = {name: machine_code(*writing) for name, writing in self._writings.items()}
         return Functions(LANES, len(self.constants), 4 * (HALF + 1) * len(self.shared), **functions)
 
     @cached_property
     def are_kept(self) -> bool:
-        """Whether the machine code of all functions is kept on disk."""
-        return all(is_kept(*written) for written in self._written.values())
+        """True where the machine code of all functions is kept on disk."""
+        return all(is_kept(*writing) for writing in self._writings.values())
 
-    @cached_property
-    def _written(self) -> dict[str, Written]:
-        """What each function of machine code is written by: what emits its body, kinds of arguments, and text."""
+    @property
+    def _writings(self) -> dict[str, Writing]:
+        """How each function is written."""
         text, of_designs = self._text(), (INTEGER, INTEGER, INTEGERS, ROW, INTEGERS, ROW)
-        functions: dict[str, Written] = {
+        functions: dict[str, Writing] = {
             "prepare": (self._emit_prepare, of_designs, text),
             "share": (self._emit_share, (ROW, ROW), text if self.shared else ""),
             "sample": (self._emit_sample, (ROW, ROW, ROW), text),
