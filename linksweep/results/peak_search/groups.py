@@ -22,9 +22,9 @@ from linksweep.scene.scene import Scene
 
 AT_ONCE = 256
 """Designs searched together whose motion repeats every turn, so that the memory for it does not grow with a study."""
-OWN_AT_ONCE = 16
+OWN_AT_ONCE = 64
 """Designs searched together where loads over the angle have design dims: each load is sampled at all designs' angles,
-so the memory grows with the square of this number."""
+so that the memory for it grows with the square of this number, here to some 30 MB."""
 COMBINED = "_combined"
 """Dim that combines the design dims of loads over the angle."""
 
