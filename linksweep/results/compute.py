@@ -176,8 +176,8 @@ def known_names(scene: Scene, names: tuple[str, ...], known: Callable[[str], str
     `known` is `where_ok` or `unless_jammed`. A quantity that lacks dims of the status keeps its own name: designs that
     share it may differ in status. So does one that has no value itself where the status is not ok.
     """
-    shown = showing_status(scene, names)
-    others = tuple(name for name in names if name not in shown)
+    with_status = showing_status(scene, names)
+    others = tuple(name for name in names if name not in with_status)
     of_request = plan(scene.table, (*others, *map(known, others)), scene.inputs.forms).outputs
     same = {name for name in others if of_request[name].dims == of_request[known(name)].dims}
     return {name: known(name) if name in same else name for name in names}

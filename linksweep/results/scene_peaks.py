@@ -210,8 +210,8 @@ def _of_samples(scene: Scene, angles: ArrayLike, items: list[Request], threads: 
     sampled = scene.at(grid)
     signals, powers = needed(items)
     of_ok = known_names(sampled, tuple(name for name, _ in powers), where_ok)
-    shown = showing_status(sampled, signals)
-    known_signals = {signal: signal if signal in shown else where_ok(signal) for signal in signals}
+    with_status = showing_status(sampled, signals)
+    known_signals = {signal: signal if signal in with_status else where_ok(signal) for signal in signals}
     largest = {signal: Reduction("largest_sample", known_signals[signal]) for signal in signals}
     pace = changing_pace(sampled)
     averages = {} if pace else {p: Reduction(("mean", "mean_square")[p[1] - 1], of_ok[p[0]]) for p in powers}

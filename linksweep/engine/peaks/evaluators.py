@@ -65,7 +65,7 @@ SOON = 2 * LANES
 """
 
 Writing = tuple[Callable[..., Any], tuple[str, ...], str]
-"""How a function of machine code is written: what emits its body, the kinds of its arguments, and a text that differs
+"""The writing of a function of machine code: what emits its body, the kinds of its arguments, and a text that differs
 wherever the body does."""
 Pairs = Iterator[tuple[Any, Any, Values, Values]]
 """Half turn and number of a sample from its middle on, and the values there and at its mirror."""
@@ -164,7 +164,7 @@ class Evaluators(Patience):
 
     @property
     def _writings(self) -> dict[str, Writing]:
-        """How each function is written."""
+        """The writing of each function."""
         text, of_designs = self._text(), (INTEGER, INTEGER, INTEGERS, ROW, INTEGERS, ROW)
         functions: dict[str, Writing] = {
             "prepare": (self._emit_prepare, of_designs, text),

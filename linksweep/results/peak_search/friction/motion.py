@@ -28,8 +28,8 @@ def of_free_angles(
     A design that is free at all angles keeps its peaks, whichever others stand beside it.
     """
     sampled = scene.at_one_angle
-    shown = showing_status(sampled, tuple(peaks)) if scene.mechanism.rubs else peaks
-    motion = {signal: where_ok(signal) for signal in peaks if signal not in shown}
+    with_status = showing_status(sampled, tuple(peaks)) if scene.mechanism.rubs else peaks
+    motion = {signal: where_ok(signal) for signal in peaks if signal not in with_status}
     jammed = jams(scene).values if motion else np.zeros((), dtype=bool)
     if not jammed.any():
         return peaks
