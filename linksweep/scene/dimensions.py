@@ -69,10 +69,15 @@ def dimension_problems(arrays: Arrays, index: str, quantities: Collection[str]) 
 
 def length_problems(numbers: Mapping[str, tuple[Any, str]], index: str) -> list[str]:
     """Return why arrays of a machine and its motion, among the numbers of a scene, do not fit together: a line for each
-    whose length along a dim, but the index, differs from that of the first. Nothing can be computed of such ones."""
-    arrays = {path: number for path, (number, _) in numbers.items() if isinstance(number, xr.DataArray)}
-    by_dim = _by_dim({path: array for path, array in arrays.items() if not path.startswith("loads[")}).items()
-    return [line for dim, sharing in by_dim if dim != index for line in _length_problems(dim, sharing)]
+    whose length along a dim, but the index, differs from that of the first, or for the dim's name, if that is wrong.
+    Nothing can be computed of such arrays."""
+    every = {path: number for path, (number, _) in numbers.items() if isinstance(number, xr.DataArray)}
+    arrays = {path: array for path, array in every.items() if not path.startswith("loads[")}
+    problems: list[str] = []
+    for dim, sharing in _by_dim(arrays).items():
+        if dim != index and (lengths := [*_length_problems(dim, sharing)]):
+            problems += [*_name_problems(dim, index, sharing, arrays, ())] or lengths
+    return problems
 
 
 def _by_dim(arrays: Arrays) -> dict[object, Arrays]:

@@ -41,6 +41,14 @@ def six_bar(ground, **changes) -> ls.Scene:
             ["ground has 2 values along design, but coupler.length has 3: one dimension"],
         ),
         (
+            lambda: scene(omega2=array(1.0, 2.0, dims="angle"), alpha2=array(1.0, 2.0, 3.0, dims="theta")),
+            ['alpha2 has a dimension "theta": rename it; did you mean "theta2"?'],
+        ),
+        (  # of a wrong name, too, the lengths may differ
+            lambda: scene(omega2=array(1.0, 2.0, dims="theta"), alpha2=array(1.0, 2.0, 3.0, dims="theta")),
+            ['omega2 has a dimension "theta": rename it; did you mean "theta2"?'],
+        ),
+        (
             lambda: six_bar(ground={"D": (array(0.2, 0.21), array(0.0, 0.1, 0.2))}, omega2="fast"),
             [
                 'omega2 = "fast": must be',
