@@ -61,18 +61,25 @@ def bind_store(
     return _bind(getattr(lib, function), [len(theta2)], [*tables, _pack(design), out]), out
 
 
-def bind_peaks(lib: ctypes.CDLL, designs: Design, n_angles: int) -> tuple[Callable[[], object], tuple[Array, Array]]:
-    """Return a call that computes the grid peaks of many designs, and the two arrays (n_designs, 6) that it fills.
+def bind_peaks(
+    lib: ctypes.CDLL, designs: Design, n_angles: int, threads: int = 1
+) -> tuple[Callable[[], object], tuple[Array, Array]]:
+    """Return a call that computes the grid peaks of many designs by some threads, and the two arrays
+    (n_designs, 6) that it fills.
 
     Columns: largest F12, F32, F43, F14, largest T12, smallest T12; the second array holds their samples, as floats; −1
     where there is none, and the value is NaN.
     """
     if n_angles < LANES:
         raise ValueError(f"n_angles = {n_angles}: must be at least {LANES}, the lanes of limit.c")
-    packed = _pack(designs)
+    packed, tables = _pack(designs), _tables(grid(n_angles))
     values, at = np.empty((len(packed), 6)), np.empty((len(packed), 6))
-    counts, arrays = [len(packed), n_angles], [*_tables(grid(n_angles)), packed, values, at]
-    return _bind(lib.peaks, counts, arrays), (values, at)
+
+    def some(first: int, last: int) -> None:
+        arrays = (array[first:last] for array in (packed, values, at))
+        _bind(lib.peaks, [last - first, n_angles], [*tables, *arrays])()
+
+    return partial(over_threads, some, len(packed), threads, threads), (values, at)
 
 
 def bind_move(lib: ctypes.CDLL, n_angles: int, threads: int) -> Callable[[], object]:
