@@ -310,3 +310,21 @@ def test_forces_of_a_dataset_without_its_scene_are_drawn(cycles):
     ax = plot.forces(lost)
     assert len(ax.get_legend().get_texts()) == 4
     assert "_{12}" in plot.torque(lost).get_ylabel()
+
+
+CLEAR = 7.5
+"""Points from the middle of a digit to that of a symbol that leave it whole."""
+
+
+@pytest.mark.parametrize("name", ["press", "quick-return"])
+def test_no_symbol_hides_the_number_of_a_link(name):
+    """That of the crank was half behind its centre of gravity in the first picture that a newcomer sees."""
+    figure = plot.cycle(ls.sweep(ls.example(name)))
+    figure.canvas.draw()
+    ax = figure.axes[0]
+    symbols = np.concatenate([points(ax, label) for label in ("_pins", "_centres")])
+    places = {text.get_text(): text.get_position() for text in ax.texts if text.get_text().isdigit()}
+    assert {"2", "3", "4"} <= {*places}
+    on_page = ax.transData.transform
+    apart = np.linalg.norm(on_page(symbols)[:, None] - on_page([*places.values()]), axis=2)
+    assert apart.min() > CLEAR * figure.dpi / 72.0
