@@ -5,6 +5,8 @@ import math
 import os
 import pickle
 import stat
+import subprocess
+import sys
 from unittest.mock import Mock
 
 import numpy as np
@@ -49,6 +51,34 @@ def kept(folder):
     """The one kernel that is kept."""
     (path,) = folder.glob("kernel_*")
     return path
+
+
+KERNELS = """
+from hashlib import sha256
+import linksweep as ls
+from linksweep.engine.kernel.writer import Writer
+from linksweep.engine.trace.plan import plan
+
+for scene in map(ls.example, ("engine", "excavator", "klann-leg", "whitworth")):
+    sampled, peaks = scene.at(scene.grid(4)), scene.mechanism.peak_quantities(scene.drive)
+    source = Writer(plan(sampled.table, peaks, sampled.inputs.forms), ()).source
+    print(sha256(source.encode()).hexdigest())
+"""
+
+
+def test_every_process_writes_the_same_kernels():
+    """Each orders its sets of names in another way; the excavator's two struts changed places."""
+    printed = [
+        subprocess.run(
+            [sys.executable, "-c", KERNELS],
+            env={**os.environ, "PYTHONHASHSEED": seed},
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout.split()
+        for seed in ("1", "4")
+    ]
+    assert printed[0] == printed[1] and len(set(printed[0])) == 4
 
 
 def test_a_second_process_finds_the_compiled_kernel(folder):

@@ -87,9 +87,9 @@ def of_solution(scene: ls.Scene, solution: Solution) -> dict[str, Array]:
     return {name: values for name, values in every.items() if name in scene.table.quantity.keys() - GIVEN - still}
 
 
-def held(mechanism: Any) -> frozenset[str]:
+def held(mechanism: Any) -> tuple[str, ...]:
     """Return the cylinders of given length; in these scenes it is the same at every angle."""
-    return mechanism.topology.struts if isinstance(mechanism, ls.Linkage) else frozenset()
+    return mechanism.topology.struts if isinstance(mechanism, ls.Linkage) else ()
 
 
 def _centres(solution: Solution) -> dict[str, Array]:

@@ -112,7 +112,7 @@ def _joined(
         past=past,
         yokes={part.role: (part.guide, part.past) for part in parts if part.guide and not part.pins},
         cylinders=cylinders,
-        struts=struts & {*cylinders},
+        struts=tuple(role for role in cylinders if role in struts),
         gears={part.role: _ratio(part.ratio or ratios.get(part.role, "")) for part in parts if part.mate},
         hosts={**undeclared, **{name: name for name in lines}, **declared},
     )

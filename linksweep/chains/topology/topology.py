@@ -23,7 +23,7 @@ class Topology:
     past : pin of another link that the line of a link passes (`arm D-E past B`)
     yokes : guide and pin of each slider with a slot (`yoke on slide past B`)
     cylinders : both pins of each cylinder (`c1 P~B`)
-    struts : cylinders of given length, each a massless link
+    struts : cylinders of given length, in the order of the text, each a massless link
     gears : turns of each wheel per turn of the crank
     hosts : link that carries each guide, or "ground"; the guide of `past` and of `block on arm` has the link's name
     steps : gears and dyads in the order in which they find their places
@@ -36,7 +36,7 @@ class Topology:
     past: Mapping[str, str]
     yokes: Mapping[str, tuple[str, str]]
     cylinders: Mapping[str, tuple[str, str]]
-    struts: frozenset[str]
+    struts: tuple[str, ...]
     gears: Mapping[str, Fraction]
     hosts: Mapping[str, str]
     steps: tuple[Step, ...] = ()
