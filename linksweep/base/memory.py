@@ -1,10 +1,12 @@
-"""Check how much memory a request needs before it is allocated."""
+"""Check how much memory a request needs before it is allocated, and collect no garbage where many objects are made."""
 
 from __future__ import annotations
 
 import contextlib
+import gc
 import math
 import os
+from collections.abc import Iterator
 from pathlib import Path
 
 SMALL = 2**28
@@ -49,3 +51,16 @@ def _free_of_limit() -> float:
 def _own_pages(column: int) -> int:
     """Return the bytes of this process: its whole address space (column 0), or the resident part (1)."""
     return int(Path("/proc/self/statm").read_text().split()[column]) * os.sysconf("SC_PAGE_SIZE")
+
+
+@contextlib.contextmanager
+def without_collecting() -> Iterator[None]:
+    """Let Python collect no garbage while something is traced or compiled: that makes many objects at once, and to look
+    through all that numba and xarray hold took a quarter of the time of a first call."""
+    collects = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if collects:
+            gc.enable()

@@ -1,13 +1,12 @@
 """Plain Python, translated to machine code, does what Python does, to the last bit."""
 
-import gc
 import math
 from fractions import Fraction
 
 import numpy as np
 import pytest
 
-from linksweep.engine.kernel.machine_code import address, without_collecting
+from linksweep.engine.kernel.machine_code import address
 from linksweep.engine.kernel.translate import translated
 
 MOST = 5
@@ -153,20 +152,3 @@ def with_two_types(x):
 def test_what_has_no_translation_is_named(function, text):
     with pytest.raises(SyntaxError, match=rf"test_translate, line \d+: no translation for {text}"):
         translated(function, ("f8[:]",))
-
-
-@pytest.mark.parametrize("collects", [True, False])
-def test_garbage_is_collected_again_after_compiling_if_it_was_before(collects):
-    @without_collecting()
-    def fail():
-        states.append(gc.isenabled())
-        raise ZeroDivisionError
-
-    before, states = gc.isenabled(), []
-    (gc.enable if collects else gc.disable)()
-    try:
-        with pytest.raises(ZeroDivisionError):
-            fail()
-        assert [*states, gc.isenabled()] == [False, collects]
-    finally:
-        (gc.enable if before else gc.disable)()

@@ -19,8 +19,9 @@ from types import FunctionType, ModuleType
 from typing import Any
 
 from linksweep.base.cache import forget, keep, recall
+from linksweep.base.memory import without_collecting
 from linksweep.engine.kernel import vectors
-from linksweep.engine.kernel.machine_code import INTEGER, MachineCode, without_collecting
+from linksweep.engine.kernel.machine_code import INTEGER, MachineCode
 
 SETTINGS: dict[str, Any] = {"error_model": "numpy", "nogil": True, "_nrt": False}
 """IEEE division, no GIL, and no fast-math at all: sums that LLVM contracts or reorders would change bits. Kernels

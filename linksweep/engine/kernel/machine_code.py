@@ -10,14 +10,12 @@ number of axes, the address alone.
 from __future__ import annotations
 
 import ctypes
-import gc
 import hashlib
 import inspect
 import os
 import struct
 import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from functools import cache, cached_property
 from itertools import count
 from typing import Any, NamedTuple
@@ -25,6 +23,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from linksweep.base.cache import keep, recall
+from linksweep.base.memory import without_collecting
 from linksweep.engine.kernel import instructions
 
 INTEGER, INTEGERS, ROW, TABLE = "i8", "i8[:]", "f8[:]", "f8[:, :]"
@@ -104,19 +103,6 @@ def caller(kinds: tuple[str, ...]) -> Callable[[int, bytes], int]:
 def address(array: np.ndarray) -> int:
     """Return where an array starts in memory."""
     return _integer_at(id(array) + HEADER).value
-
-
-@contextmanager
-def without_collecting() -> Iterator[None]:
-    """Let Python collect no garbage while something compiles: that makes many objects at once, and to look through all
-    that numba and xarray hold took a quarter of the time of a first call."""
-    collects = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if collects:
-            gc.enable()
 
 
 @without_collecting()

@@ -37,7 +37,8 @@ def contracted(results: Iterable[Node], known: Mapping[str, float]) -> Contracte
             values[node] = graph.constant(known[node.value])
         else:
             values[node] = _value(graph, node, values) if node.operands else graph.copy(node, ())
-        made |= dict.fromkeys(graph.nodes[before:], node)
+        for new in graph.nodes[before:]:
+            made[new] = node
     return Contracted(values, made)
 
 
@@ -46,13 +47,13 @@ def _value(graph: Simplified, node: Node, values: dict[Node, Node]) -> Node:
     operands = [values[x] for x in node.operands]
     if node.operator in ("+", "-"):
         (x, x_minus), (y, y_minus) = map(_unsigned, node.operands)
-        before, after = operands
-        if node.operator == "-":
-            after, y_minus = -after, not y_minus
-        for product, minus, other in ((y, y_minus, before), (x, x_minus, after)):
-            if product.operator == "*" and not _equal_products(x, y):
-                factors = (values[factor] for factor in product.operands)
-                return graph.apply("fnma" if minus else "fma", *factors, other)
+        if "*" in (x.operator, y.operator) and not _equal_products(x, y):
+            before, after = operands
+            if node.operator == "-":
+                after, y_minus = -after, not y_minus
+            product, minus, other = (y, y_minus, before) if y.operator == "*" else (x, x_minus, after)
+            factors = (values[factor] for factor in product.operands)
+            return graph.apply("fnma" if minus else "fma", *factors, other)
     return graph.apply(node.operator, *operands)
 
 

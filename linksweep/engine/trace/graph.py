@@ -18,8 +18,8 @@ def _traced(operator: str, reflected: bool = False) -> Callable[..., Node]:
     """Return a method of nodes, for another node or a number, that traces this operation."""
 
     def method(self: Node, other: Node | float) -> Node:
-        x, y = (other, self) if reflected else (self, other)
-        return self.graph.apply(operator, self.graph.node(x), self.graph.node(y))
+        other = self.graph.node(other)
+        return self.graph.apply(operator, other, self) if reflected else self.graph.apply(operator, self, other)
 
     return method
 
@@ -81,42 +81,59 @@ class Graph:
     def __init__(self) -> None:
         self.nodes: list[Node] = []
         self.low_words: set[Node] = set()
-        self._known: dict[tuple[str, tuple[int, ...], object], Node] = {}
+        self._known: dict[Key, Node] = {}
 
     def node(self, value: Node | float) -> Node:
         return value if isinstance(value, Node) else self.constant(float(value))
 
     def constant(self, value: float) -> Node:
-        return self._make("constant", (), frozenset(), value)
+        return self._make("constant", (), value, frozenset())
 
     def input(self, name: str, dims: tuple[str, ...]) -> Node:
-        return self._make("input", (), frozenset(dims), name)
+        return self._make("input", (), name, frozenset(dims))
 
     def apply(self, operator: str, *operands: Node) -> Node:
         """Return the value of an operation."""
-        return self.operation(operator, *operands)
+        return self._make(operator, operands)
 
     def operation(self, operator: str, *operands: Node) -> Node:
         """Return the node of an operation."""
-        return self._make(operator, operands, frozenset().union(*(x.dims for x in operands)), None)
+        return self._make(operator, operands)
 
     def copy(self, node: Node, operands: tuple[Node, ...]) -> Node:
         """Return a copy of a node of another graph, with operands of this one."""
-        return self._make(node.operator, operands, node.dims, node.value)
+        return self._make(node.operator, operands, node.value, node.dims)
 
     def find(self, operator: str, *operands: Node) -> Node | None:
         """Return the node of an operation on these operands, if there is one."""
         return self._known.get(self._key(operator, operands, None))
 
-    def _make(self, operator: str, operands: tuple[Node, ...], dims: frozenset[str], value) -> Node:
+    def _make(
+        self, operator: str, operands: tuple[Node, ...], value: object = None, dims: frozenset[str] | None = None
+    ) -> Node:
+        """Return a node, a new one if there is none that is equal; an operation has the dims of its operands."""
         key = self._key(operator, operands, value)
-        if key not in self._known:
-            self._known[key] = Node(self, operator, operands, dims, value)
-        return self._known[key]
+        node = self._known.get(key)
+        if node is None:
+            dims = _dims(operands) if dims is None else dims
+            node = self._known[key] = Node(self, operator, operands, dims, value)
+        return node
 
-    def _key(self, operator: str, operands: tuple[Node, ...], value: object) -> tuple[str, tuple[int, ...], object]:
-        """Return what equal operations have in common."""
-        return operator, tuple(x.position for x in operands), value
+    def _key(self, operator: str, operands: tuple[Node, ...], value: object) -> Key:
+        """Return what equal nodes have in common."""
+        return operator, operands, value
+
+
+Key = tuple[str, tuple[Node, ...], object]
+
+
+def _dims(operands: tuple[Node, ...]) -> frozenset[str]:
+    """Return the dims that any of these operands depends on."""
+    dims = operands[0].dims
+    for x in operands:
+        if not x.dims <= dims:
+            dims |= x.dims
+    return dims
 
 
 def operands(nodes: Iterable[Node]) -> set[Node]:

@@ -11,6 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
+from linksweep.base.memory import without_collecting
 from linksweep.engine.quantity import Row, Table, Total
 from linksweep.engine.trace.contraction import contracted
 from linksweep.engine.trace.graph import Graph, Node, in_order, leading_to
@@ -119,6 +120,7 @@ InputForms = tuple[tuple[str, tuple[str, ...] | float], ...]
 
 
 @lru_cache(maxsize=256)
+@without_collecting()
 def plan(table: Table, request: tuple[str, ...], inputs: InputForms) -> Plan:
     """Trace `request` through `table`, starting from `inputs`.
 

@@ -7,10 +7,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from linksweep.engine.trace.graph import Graph, Node
+from linksweep.engine.trace.graph import Graph, Key, Node
 
-COMMUTATIVE = {"+": 2, "*": 2, "sum_low": 2, "product_low": 2, "fma": 2, "fnma": 2}
-"""Operations of which the first operands, so many, may change places."""
+COMMUTATIVE = {"+", "*", "sum_low", "product_low", "fma", "fnma"}
+"""Operations of which the first two operands may change places."""
 KNOWN: Mapping[str, Callable[..., float]] = {"<": lambda x, y: float(x < y), "abs": abs}
 """Operations that are computed where their operands are constants."""
 
@@ -24,10 +24,11 @@ class Simplified(Graph):
         rule = RULES.get(operator)
         return rule(self, *operands) if rule else self.operation(operator, *operands)
 
-    def _key(self, operator: str, operands: tuple[Node, ...], value: object) -> tuple[str, tuple[int, ...], object]:
-        """Return what equal operations have in common, also if their operands have changed places."""
-        positions, n = [x.position for x in operands], COMMUTATIVE.get(operator, 0)
-        return operator, (*sorted(positions[:n]), *positions[n:]), value
+    def _key(self, operator: str, operands: tuple[Node, ...], value: object) -> Key:
+        """Return what equal nodes have in common, also if their operands have changed places."""
+        if operator in COMMUTATIVE and operands[0].position > operands[1].position:
+            operands = (operands[1], operands[0], *operands[2:])
+        return operator, operands, value
 
     def add(self, x: Node, y: Node) -> Node:
         if x.is_constant(0.0):

@@ -133,7 +133,7 @@ def written(node) -> int:
     known = {}
     for x in leading_to([node]):
         operands = [known[y] for y in x.operands]
-        free_order = COMMUTATIVE.get(x.operator, 0)
+        free_order = 2 if x.operator in COMMUTATIVE else 0
         known[x] = hash((x.operator, x.value, *sorted(operands[:free_order]), *operands[free_order:]))
     return known[node]
 
