@@ -79,5 +79,5 @@ class _Registers:
     def release(self, nodes: Iterable[Node], step: int) -> None:
         """Free the registers of nodes that no later step reads."""
         for node in nodes:
-            if node in self.of and node not in self._kept and self._last.get(node, -1) <= step:
+            if self._last.get(node, -1) <= step and node in self.of and node not in self._kept:
                 self._free.append(self.of.pop(node))

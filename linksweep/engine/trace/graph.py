@@ -9,6 +9,7 @@ prescribes, so all return equal bits.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from operator import attrgetter
 
 LOW_WORDS = {"sum_low": "+", "difference_low": "-", "ordered_low": "+", "product_low": "*"}
 """Operations that give what the rounded result of another one misses: error bounds and derivatives leave them out."""
@@ -143,7 +144,7 @@ def operands(nodes: Iterable[Node]) -> set[Node]:
 
 def in_order(nodes: Iterable[Node]) -> list[Node]:
     """Return nodes in the order in which they were traced."""
-    return sorted(nodes, key=lambda node: node.position)
+    return sorted(nodes, key=attrgetter("position"))
 
 
 def leading_to(nodes: Iterable[Node]) -> list[Node]:

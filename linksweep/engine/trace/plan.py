@@ -61,10 +61,13 @@ class Plan:
     def loops(self) -> tuple[str, ...]:
         """Return the design dims, outermost first: dims that most operations depend on are outside, to share those
         operations."""
-        weight = Counter(dim for node in self.nodes if self.index in node.dims for dim in sorted(node.dims))
-        every = Counter(dim for node in self.nodes for dim in sorted(node.dims))
-        dims = [dim for dim in every if dim != self.index]
-        return tuple(sorted(dims, key=lambda dim: (-weight[dim], -every[dim], dim)))
+        counts = Counter(node.dims for node in self.nodes)
+
+        def number(*dims: str) -> int:
+            return sum(count for of_node, count in counts.items() if of_node.issuperset(dims))
+
+        dims = frozenset[str]().union(*counts) - {self.index}
+        return tuple(sorted(dims, key=lambda dim: (-number(dim, self.index), -number(dim), dim)))
 
     @cached_property
     def dims_of_outputs(self) -> Mapping[str, tuple[str, ...]]:
