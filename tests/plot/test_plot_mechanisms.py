@@ -318,7 +318,7 @@ CLEAR = 7.5
 
 @pytest.mark.parametrize("name", ["press", "quick-return"])
 def test_no_symbol_hides_the_number_of_a_link(name):
-    """That of the crank was half behind its centre of gravity in the first picture that a newcomer sees."""
+    """In the demo's picture the number of the crank was half behind its centre of gravity."""
     figure = plot.cycle(ls.sweep(ls.example(name)))
     figure.canvas.draw()
     ax = figure.axes[0]

@@ -220,7 +220,7 @@ def test_the_command_writes_its_table(tmp_path, capsys, monkeypatch):
     assert short_name(stored.machine) in written
     assert stored.machine == machine()
     assert all(value in written for value in machine().values())
-    assert len(stored.rows) == 5
+    assert len(stored.rows) == 6
 
 
 def test_times_that_mean_nothing_are_not_written(capsys):
