@@ -82,6 +82,7 @@ class Polynomials(NamedTuple):
         start = self.knots[0] + np.mod(start - self.knots[0] + ROUNDED, period) - ROUNDED
         first = np.searchsorted(knots, start + ROUNDED, side="right") - 1
         last = np.searchsorted(knots, start + length - ROUNDED, side="left") - 1
+        last = np.maximum(first, last)  # a rounding error before a knot, a piece may be shorter than that of its start
         at_designs = {name: tuple(places[dim] for dim in field.dims) for name, field in self.inputs.items()}
         numbers = {}
         for nth in range(self.per_piece):
