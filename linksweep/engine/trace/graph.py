@@ -76,6 +76,10 @@ class Node:
         return self.operator == "constant" and self.value == value
 
 
+Key = tuple[str, tuple[Node, ...], object]
+"""What equal nodes have in common."""
+
+
 class Graph:
     """Nodes in order of creation, so that operands precede the operations that use them."""
 
@@ -123,9 +127,6 @@ class Graph:
     def _key(self, operator: str, operands: tuple[Node, ...], value: object) -> Key:
         """Return what equal nodes have in common."""
         return operator, operands, value
-
-
-Key = tuple[str, tuple[Node, ...], object]
 
 
 def _dims(operands: tuple[Node, ...]) -> frozenset[str]:

@@ -15,6 +15,7 @@ BAR, EDGE = "#DCE6EE", "#3F4B55"
 CENTRE_LINE = (0.0, (8.0, 3.0, 1.0, 3.0))
 CENTRE = 7.5  # points: size of a centre of gravity
 STROKES = 0.35  # of the block's half side: length of the hatching
+HIDDEN = 0.14  # of a link's length: distance from a symbol within which that hides the link's number
 
 
 def supports(ax: Axes, at: np.ndarray, size: float = 30.0) -> None:
@@ -89,7 +90,7 @@ def number_of_link(ax: Axes, number: int, ends: np.ndarray, own: np.ndarray, cov
     clear, free = (np.linalg.norm(places[:, None] - points, axis=2).min(axis=1) / length for points in (own, covered))
     clear = np.minimum(clear, np.minimum(shares, 1.0 - shares)[:, 0])
     best = np.argmax(np.round(clear, 6))  # where two are equally far, the same one in every frame of a film
-    number_at(ax, number, places[best if free[best] > 0.14 else np.argmax(np.minimum(clear, free))])
+    number_at(ax, number, places[best if free[best] > HIDDEN else np.argmax(np.minimum(clear, free))])
 
 
 def telescope(ax: Axes, barrel: np.ndarray, rod: np.ndarray, shortest: float) -> None:
