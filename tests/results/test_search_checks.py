@@ -89,7 +89,7 @@ def test_peaks_are_those_of_the_machine_with_closed_forms(name, linkage, jams):
 
 
 def test_peaks_with_a_table_of_a_load_are_those_of_the_machine_with_closed_forms():
-    """Of six designs they were up to 28 times as large: where a near-toggle, found by search, lies a rounding error
+    """Six designs had peaks up to 28 times as large: where a near-toggle, found by search, lies a rounding error
     before the end of the turn, a piece of no length took the table's values from another turn."""
     theta2 = np.arange(0.0, 360.0, 15.0)
     torque = xr.DataArray(10.0 + 3.0 * np.sin(np.radians(theta2)), {"theta2": theta2}, "theta2")
