@@ -209,7 +209,7 @@ def draw_links(ax: Axes, drawing: Drawing, shape: Shape) -> dict[int, np.ndarray
     for number, corners in ends.items():
         if number in drawing.bars:
             machine_parts.link(ax, number, corners)
-        own = shape.centres.get(number, shape.point)[None]
+        own = np.array([*corners[:2], *(place for link, place in shape.centres.items() if link == number)])
         machine_parts.number_of_link(ax, number, corners, own, covered)
     for (barrel, rod), shortest in zip(drawing.telescopes, shape.shortest, strict=True):
         machine_parts.telescope(ax, shape.pins[barrel], shape.pins[rod], shortest)

@@ -77,7 +77,7 @@ class Node:
 
 
 Key = tuple[str, tuple[Node, ...], object]
-"""What equal nodes have in common."""
+"""Operator, operands and value of a node: those of equal nodes are the same."""
 
 
 class Graph:
@@ -125,7 +125,7 @@ class Graph:
         return node
 
     def _key(self, operator: str, operands: tuple[Node, ...], value: object) -> Key:
-        """Return what equal nodes have in common."""
+        """Return the key that equal nodes share."""
         return operator, operands, value
 
 

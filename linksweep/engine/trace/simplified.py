@@ -25,7 +25,7 @@ class Simplified(Graph):
         return rule(self, *operands) if rule else self.operation(operator, *operands)
 
     def _key(self, operator: str, operands: tuple[Node, ...], value: object) -> Key:
-        """Return what equal nodes have in common, also if their operands have changed places."""
+        """Return the key that equal nodes share, also those whose operands have changed places."""
         if operator in COMMUTATIVE and operands[0].position > operands[1].position:
             operands = (operands[1], operands[0], *operands[2:])
         return operator, operands, value

@@ -81,14 +81,12 @@ def link(ax: Axes, number: int, corners: np.ndarray) -> None:
 
 
 def number_of_link(ax: Axes, number: int, ends: np.ndarray, own: np.ndarray, covered: np.ndarray) -> None:
-    """Write a link's number between its first two pins, as far as possible from these and from its `own` points, unless
-    one of the `covered` points lies there now; both in rows."""
+    """Write a link's number between its first two pins, as far as possible from symbols of its `own`, these pins among
+    them, unless one of the `covered` points lies there now; both in rows."""
     side = ends[1] - ends[0]
     length = np.linalg.norm(side) or 1.0  # two pins may lie together
-    shares = np.linspace(0.2, 0.8, 13)[:, None]
-    places = ends[0] + shares * side
+    places = ends[0] + np.linspace(0.2, 0.8, 13)[:, None] * side
     clear, free = (np.linalg.norm(places[:, None] - points, axis=2).min(axis=1) / length for points in (own, covered))
-    clear = np.minimum(clear, np.minimum(shares, 1.0 - shares)[:, 0])
     best = np.argmax(np.round(clear, 6))  # where two are equally far, the same one in every frame of a film
     number_at(ax, number, places[best if free[best] > HIDDEN else np.argmax(np.minimum(clear, free))])
 
