@@ -191,8 +191,11 @@ def height_between(before, left, value, right):
 
 
 def with_summit(height, number, summit, reach, other):
-    """Return the best summit, and the heights that it and any other may reach, with one more."""
-    best, less = reach < height, (height < reach).where(height, reach)
+    """Return the best summit, and the heights that it and any other may reach, with one more; beside a sample without a
+    value, as in a dead centre, its height is NaN, and may be any."""
+    best = reach < height
+    less = best.where(reach, height)
+    less = (less < math.inf).where(less, math.inf)
     return best.where(number, summit), best.where(height, reach), (other < less).where(less, other)
 
 

@@ -59,6 +59,17 @@ def test_the_best_summit_and_the_next_are_those_of_a_search_one_by_one():
     np.testing.assert_allclose(state[turns.OTHER], ranked[-2], rtol=1e-15)
 
 
+def test_beside_a_sample_without_a_value_a_summit_of_any_height_may_hide():
+    columns, state = 8, np.zeros((turns.STATE_ROWS, 8))
+    rows = np.random.default_rng(1).normal(size=(SAMPLES, columns))
+    for lane, none in enumerate((0, 7, HALF, SAMPLES - 1)):
+        rows[none, lane], rows[(none + 1) % SAMPLES, lane] = np.nan, 3.0
+        rows[(none + 11) % SAMPLES, lane] = 4.0
+    turns.compare_samples(rows.ravel(), SAMPLES, state, columns)
+    assert (np.isposinf(state[turns.OTHER]) == [True] * 4 + [False] * 4).all()
+    assert np.isfinite(state[turns.REACH]).all()
+
+
 @pytest.mark.parametrize(("top", "dip"), [(0.4, 1.1), (0.5, 1.2), (0.8, 1.3), (-0.5, 3.5), (1.2, 1.8)])
 @pytest.mark.parametrize("turned", [False, True])
 def test_a_top_between_two_of_four_samples_that_rise_or_fall_is_noted(top, dip, turned):
