@@ -82,6 +82,12 @@ def put(peak: SignalPeak, group: Any, numbers: tuple[Array, ...]) -> None:
         field.values.reshape(-1)[at] = values
 
 
+def numbers_of(peak: SignalPeak, group: Any) -> tuple[Array, ...]:
+    """Return the four numbers of a signal's peak of each of a group's designs."""
+    at = flat_index(peak.value, group.places, len(group.designs))
+    return tuple(field.values.reshape(-1)[at] for field in peak)
+
+
 def raise_to(peak: SignalPeak, group: Any, numbers: tuple[Array, ...]) -> None:
     """Replace a signal's peaks of a group's designs, some of which may share one, by the highest of these numbers."""
     if len(group.designs):
@@ -101,9 +107,13 @@ def follow(group: Any, peaks: dict[str, SignalPeak], all_paths: tuple[PathsOf, .
             _raise(peak, index, *(numbers[:, k] for numbers in best))
 
 
-def raise_to_poles(group: Any, peaks: dict[str, SignalPeak], threads: int | None, part: Part | None = None) -> None:
-    """Make the peaks infinite at the poles of their signals, those inside a part of the period if there is one."""
+def raise_to_poles(
+    group: Any, peaks: dict[str, SignalPeak], threads: int | None, part: Part | None = None
+) -> tuple[Array, Array]:
+    """Make the peaks infinite at the poles of their signals, those inside a part of the period if there is one; return
+    all possible poles, of each the row of its design and its angle."""
     row, angle, infinite = poles(group, tuple(peaks), threads)
+    possible = row, angle
     if part is not None:
         inside = in_period(angle - part[0], group.scene.period) <= part[1] - part[0]
         row, angle, infinite = row[inside], angle[inside], infinite[inside]
@@ -112,6 +122,7 @@ def raise_to_poles(group: Any, peaks: dict[str, SignalPeak], threads: int | None
         at = flat_index(peak.value, places, len(row))[infinite[:, k]]
         for field, values in zip(peak[:3], (np.inf, angle[infinite[:, k]], 0.0), strict=True):
             field.values.reshape(-1)[at] = values
+    return possible
 
 
 def _raise(peak: SignalPeak, at: Array, best: Array, best_angle: Array, best_bound: Array, taken: Array) -> None:

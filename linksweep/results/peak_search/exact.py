@@ -32,6 +32,7 @@ from linksweep.results.peak_search.along_paths import (
     angle_in_period,
     follow,
     nothing,
+    numbers_of,
     put,
     raise_to_poles,
     start_near_period,
@@ -40,7 +41,7 @@ from linksweep.results.peak_search.along_paths import (
 from linksweep.results.peak_search.approaches import with_narrow_approaches
 from linksweep.results.peak_search.arcs import about_approaches_on_arcs, arc_ends, arcs, arcs_within
 from linksweep.results.peak_search.between import EVERYWHERE, ONE, PARTLY
-from linksweep.results.peak_search.groups import all_at_once, assembled_groups, different, empty, groups
+from linksweep.results.peak_search.groups import Group, all_at_once, assembled_groups, different, empty, groups
 from linksweep.results.peak_search.on_arcs import follow_arcs
 from linksweep.results.peak_search.paths import ASIDE, Part, about_approaches, about_breaks, turns
 from linksweep.results.peak_search.pieces import (
@@ -50,7 +51,14 @@ from linksweep.results.peak_search.pieces import (
     known_on_pieces,
     rubbing_signals,
 )
-from linksweep.results.peak_search.poles import designs_with_candidates, designs_without_jams, may_have_poles
+from linksweep.results.peak_search.poles import (
+    clear_of,
+    designs_with_candidates,
+    designs_without_jams,
+    may_have_poles,
+    spoilt_peaks,
+    without_jams,
+)
 from linksweep.scene.dimensions import aligned
 from linksweep.scene.grid import NAMES as GRID_ROWS
 from linksweep.scene.pairs import Array, changes, in_period
@@ -107,7 +115,25 @@ def _raise_to_poles(
         if scene.table.limits is None:
             designs = designs_with_candidates(scene, designs, tuple(peaks))
         for _, group in assembled_groups(scene, tuple(peaks), designs=designs, at_once=FEW_SAMPLES_AT_ONCE):
-            raise_to_poles(group, peaks, threads, part)
+            row, angle = without_jams(group, *raise_to_poles(group, peaks, threads, part))
+            if len(row):
+                _search_clear_of_poles(group, peaks, (row, angle), threads, part)
+
+
+def _search_clear_of_poles(
+    group: Group, peaks: dict[str, SignalPeak], at: tuple[Array, Array], threads: int | None, part: Part | None
+) -> None:
+    """Replace peaks of rounding errors beside dead centres and change points, each stated by the row of its design and
+    its angle, by those clear of them."""
+    (row, angle), known = at, {signal: numbers_of(peak, group)[:2] for signal, peak in peaks.items()}
+    spoilt = spoilt_peaks(group, known, row, angle, threads)
+    for design in np.flatnonzero(spoilt.any(axis=0)):
+        own, again = group.some(np.array([design])), spoilt[:, design]
+        some = {signal: peak for (signal, peak), is_spoilt in zip(peaks.items(), again, strict=True) if is_spoilt}
+        for peak in some.values():
+            put(peak, own, (np.full(1, np.nan),) * len(peak))
+        parts = clear_of(angle[row == design], part, group.scene.period)
+        follow(own, some, tuple(partial(arcs_within, clear) for clear in parts), threads)
 
 
 def _by_paths(

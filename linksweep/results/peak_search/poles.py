@@ -8,7 +8,7 @@ does that.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from functools import singledispatch
 from itertools import chain
 from typing import Any
@@ -23,6 +23,7 @@ from linksweep.results.peak_search.between import PARTLY
 from linksweep.results.peak_search.friction.jams import jammed_designs, may_jam
 from linksweep.results.peak_search.groups import Group, all_at_once
 from linksweep.results.peak_search.limits import limits_of
+from linksweep.results.peak_search.paths import Part
 from linksweep.scene.dimensions import side_by_side
 from linksweep.scene.pairs import Array
 from linksweep.scene.scene import Scene
@@ -41,6 +42,13 @@ EVENNESS = 1.1
 """Factor by which the growths over two halvings differ at most: of a power they are equal."""
 TOGGLE = 2.0
 """Status of a sample in a toggle."""
+CLEAR = 0.01
+"""Distance from a possible pole [degree] within which a quantity that has a limit there may be a quotient of rounding
+errors."""
+SPOILT = 1e-9
+"""Least error, relative to a quantity, that tells a peak of rounding errors from one of the quantity."""
+KINDS = {"dead_centre": "dead_centre", "wedge": "jam"}
+"""Kinds of zeros that a search locates, and what closed forms call them."""
 OF_OUTPUT = ("torque_ratio", "mechanical_advantage")
 """Quantities with a pole where the output stands still, whichever link drives."""
 
@@ -103,6 +111,51 @@ def poles(group: Group, signals: tuple[str, ...], threads: int | None = None) ->
     return row, angle, np.any(infinite, axis=-1).T
 
 
+def spoilt_peaks(
+    group: Group, peaks: dict[str, tuple[Array, ...]], row: Array, pole: Array, threads: int | None = None
+) -> Array:
+    """Return which signals of which designs (signal, design) have peaks that consist of rounding errors.
+
+    `peaks` are the values and the angles [degree] of each signal's peaks. Close to a possible pole, stated by its
+    design's row and its angle, a finite peak must not exceed the parabola through three samples on one side of it. The
+    poles must not be jams, as forces do rise just before these.
+    """
+    signals, (value, at) = tuple(peaks), (np.stack(numbers) for numbers in zip(*peaks.values(), strict=True))
+    half = 0.5 * group.scene.period
+    away = np.mod(at[:, row] - pole + half, 2.0 * half) - half
+    close = (np.abs(away) < CLEAR) & np.isfinite(value[:, row])
+    some = np.flatnonzero(close.any(axis=0))
+    beside = np.outer([-CLEAR, CLEAR], [1.0, 2.0, 3.0])
+    angles = np.add.outer(pole[some], beside)
+    samples = group.values(signals, np.repeat(row[some], beside.size), angles.ravel(), threads)
+    first, second, third = np.moveaxis(samples.reshape(len(signals), *angles.shape), -1, 0)
+    with np.errstate(invalid="ignore"):
+        bend = first - 2.0 * second + third
+        allowed = np.fmax(first, first + (first - second) + bend) + np.abs(bend) + SPOILT * np.abs(first)
+        exceeds = close[:, some] & (value[:, row[some]] > np.fmax.reduce(allowed, axis=-1))
+    spoilt = np.zeros(value.shape, dtype=bool)
+    signal, which = np.nonzero(exceeds)
+    spoilt[signal, row[some][which]] = True
+    return spoilt
+
+
+def without_jams(group: Group, row: Array, angle: Array) -> tuple[Array, Array]:
+    """Return the dead centres and change points among possible poles; both edges of a cone of friction may wedge at a
+    dead centre, too."""
+    dead_centre, jam = ((angle[:, None] == singular_angles(group, kinds=(kind,))[row]).any(axis=1) for kind in KINDS)
+    kept = dead_centre | ~jam
+    return row[kept], angle[kept]
+
+
+def clear_of(angles: Array, part: Part | None, period: float) -> list[Part]:
+    """Return the parts between possible poles at these angles [degree], of a part of the period or of all of it."""
+    start, end = part or (angles[0] + CLEAR, angles[0] + period - CLEAR)
+    inside = np.unique(start + np.mod(angles - start, period))
+    inside = inside[inside <= end]
+    edges = zip((start, *(inside + CLEAR)), (*(inside - CLEAR), end), strict=True)
+    return [(first, last) for first, last in edges if first < last]
+
+
 def designs_with_candidates(scene: Scene, designs: Array, signals: tuple[str, ...]) -> Array:
     """Return those designs of a scene with closed forms that have possible poles."""
     row, *_ = pole_candidates(all_at_once(scene, designs), signals)
@@ -129,18 +182,18 @@ def _grows_as_a_power(size: Array) -> Array:
     return (least > LEAST_GROWTH) & (largest < EVENNESS * least)
 
 
-def _singular_angles(findings: dict[str, Finding]) -> list[Array]:
+def _singular_angles(findings: dict[str, Finding], kinds: Collection[str] = KINDS) -> list[Array]:
     """Return the dead centres and jams among findings in closed form [degree], several on a trailing axis."""
-    return [findings[kind].values for kind in ("dead_centre_angle", "jam_angle") if kind in findings]
+    return [findings[f"{KINDS[kind]}_angle"].values for kind in kinds if f"{KINDS[kind]}_angle" in findings]
 
 
-def singular_angles(group: Group, signals: tuple[str, ...] = ()) -> Array:
+def singular_angles(group: Group, signals: tuple[str, ...] = (), kinds: Collection[str] = KINDS) -> Array:
     """Return the dead centres and jams (design, nth) of designs, those of the output if it is among the signals."""
     scene = group.scene
     checks = scene.mechanism.driven_findings(scene.motion | {"drive": scene.drive})
     checks += scene.mechanism.output_findings() if _of_output(signals) else ()
-    angles = [_singular_angles(findings(*map(group.number, numbers))) for findings, numbers in checks]
-    return np.concatenate([group.zeros("dead_centre"), group.zeros("wedge"), *chain(*angles)], axis=1)
+    angles = [_singular_angles(findings(*map(group.number, numbers)), kinds) for findings, numbers in checks]
+    return np.concatenate([*map(group.zeros, kinds), *chain(*angles)], axis=1)
 
 
 def designs_without_jams(scene: Scene, designs: Array) -> Array:

@@ -9,6 +9,8 @@ from long import long_but
 from oracle import FourBarData, LinkData, LoadData, solve, to_scene
 
 import linksweep as ls
+from benchmarks.stress.linkages.topologies import AWAY_FROM_TOGGLES
+from benchmarks.stress.six_bars import any_linkage
 
 PINS = ("F12", "F32", "F43", "F14")
 PARTIAL, UNBOUNDED = 1, 3
@@ -111,6 +113,37 @@ def test_where_friction_wedges(slide_angle):
     assert np.nanmax(growth) == pytest.approx(100.0, rel=0.01)
     assert (float(result.F14_peak), int(result.status)) == (math.inf, UNBOUNDED)
     assert min(abs(ls.check(scene).jam_angle.values - float(result.F14_peak_at))) < 1e-9
+
+
+def test_a_peak_beside_a_dead_centre_is_found_where_no_force_is_unbounded():
+    """Without loads, and its rocker's line through D, the machine passes its dead centres: no sample is ok at 0."""
+    links = ls.Link(0.1, 0.0, 0.0), ls.Link(0.3, 1.0, 0.02, 0.1, 3.0)
+    scene = ls.Scene(ls.InvertedSliderCrank(*links, ground=0.4, block_mass=0.5), 30.0, drive="cylinder")
+    peak, beside = ls.peaks(scene, of=["F14"]), ls.sweep(scene, np.linspace(0.5, 1.5, 1001), of=["F14"]).F14
+    assert float(peak.F14_peak) == pytest.approx(float(beside.max()), rel=1e-6)
+    assert float(peak.F14_peak) >= float(beside.max()) * (1.0 - 1e-12)
+    assert float(peak.F14_peak_at) == pytest.approx(float(beside.idxmax()), abs=1e-3)
+
+
+def test_forces_that_have_a_limit_at_a_change_point_are_not_rounding_errors():
+    """With ground and crank of one length, the rocker turns at half the crank's speed, and B passes through its pivot.
+
+    The moment of gravity about D, m·g·r·sin(ψ/2), is that of F43 on the arm 2·a·sin(ψ/2).
+    """
+    a, r = 0.15, 0.05
+    links = ls.Link(a, 1.0, 0.01, 0.03, 20.0), ls.Link(0.3, 1.0, 0.01, r)
+    machine = ls.InvertedSliderCrank(*links, ground=a, block_mass=2.0)
+    peaks = ls.peaks(ls.Scene(machine, 30.0, gravity=(0.0, -9.81)), of=["F43"])
+    assert float(peaks.F43_peak) == pytest.approx(9.81 * r / (2.0 * a), abs=1e-5)  # other pins bear 290 N
+
+
+def test_a_crank_that_carries_nothing_past_a_dead_centre_of_the_jack():
+    """The jack moves all other links: at constant speed the crank's pin bears the crank's own inertia alone."""
+    scene = any_linkage(AWAY_FROM_TOGGLES["Whitworth, jack drives"], np.random.default_rng(5), 20)
+    crank, passing = scene.mechanism.crank, [1, 11]  # others come to toggles
+    inertia = crank.mass * crank.cg_distance * scene.omega2**2
+    peaks = ls.peaks(scene, of=["F12"]).F12_peak
+    np.testing.assert_allclose(peaks[passing], inertia[passing], rtol=1e-9)
 
 
 def test_torque_ratio_is_unbounded_where_the_output_stands_still():
