@@ -107,13 +107,9 @@ def follow(group: Any, peaks: dict[str, SignalPeak], all_paths: tuple[PathsOf, .
             _raise(peak, index, *(numbers[:, k] for numbers in best))
 
 
-def raise_to_poles(
-    group: Any, peaks: dict[str, SignalPeak], threads: int | None, part: Part | None = None
-) -> tuple[Array, Array]:
-    """Make the peaks infinite at the poles of their signals, those inside a part of the period if there is one; return
-    all possible poles, of each the row of its design and its angle."""
+def raise_to_poles(group: Any, peaks: dict[str, SignalPeak], threads: int | None, part: Part | None = None) -> None:
+    """Make the peaks infinite at the poles of their signals, those inside a part of the period if there is one."""
     row, angle, infinite = poles(group, tuple(peaks), threads)
-    possible = row, angle
     if part is not None:
         inside = in_period(angle - part[0], group.scene.period) <= part[1] - part[0]
         row, angle, infinite = row[inside], angle[inside], infinite[inside]
@@ -122,7 +118,6 @@ def raise_to_poles(
         at = flat_index(peak.value, places, len(row))[infinite[:, k]]
         for field, values in zip(peak[:3], (np.inf, angle[infinite[:, k]], 0.0), strict=True):
             field.values.reshape(-1)[at] = values
-    return possible
 
 
 def _raise(peak: SignalPeak, at: Array, best: Array, best_angle: Array, best_bound: Array, taken: Array) -> None:

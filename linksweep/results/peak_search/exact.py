@@ -57,7 +57,6 @@ from linksweep.results.peak_search.poles import (
     designs_without_jams,
     may_have_poles,
     spoilt_peaks,
-    without_jams,
 )
 from linksweep.scene.dimensions import aligned
 from linksweep.scene.grid import NAMES as GRID_ROWS
@@ -115,23 +114,21 @@ def _raise_to_poles(
         if scene.table.limits is None:
             designs = designs_with_candidates(scene, designs, tuple(peaks))
         for _, group in assembled_groups(scene, tuple(peaks), designs=designs, at_once=FEW_SAMPLES_AT_ONCE):
-            row, angle = without_jams(group, *raise_to_poles(group, peaks, threads, part))
-            if len(row):
-                _search_clear_of_poles(group, peaks, (row, angle), threads, part)
+            raise_to_poles(group, peaks, threads, part)
+            _search_again_where_spoilt(group, peaks, threads, part)
 
 
-def _search_clear_of_poles(
-    group: Group, peaks: dict[str, SignalPeak], at: tuple[Array, Array], threads: int | None, part: Part | None
+def _search_again_where_spoilt(
+    group: Group, peaks: dict[str, SignalPeak], threads: int | None, part: Part | None
 ) -> None:
-    """Replace peaks of rounding errors beside dead centres and change points, each stated by the row of its design and
-    its angle, by those clear of them."""
-    (row, angle), known = at, {signal: numbers_of(peak, group)[:2] for signal, peak in peaks.items()}
-    spoilt = spoilt_peaks(group, known, row, angle, threads)
+    """Replace peaks of rounding errors beside dead centres and change points by those clear of these."""
+    known = {signal: numbers_of(peak, group)[:2] for signal, peak in peaks.items()}
+    spoilt, row, angle = spoilt_peaks(group, known, threads)
     for design in np.flatnonzero(spoilt.any(axis=0)):
-        own, again = group.some(np.array([design])), spoilt[:, design]
-        some = {signal: peak for (signal, peak), is_spoilt in zip(peaks.items(), again, strict=True) if is_spoilt}
+        own, nothing_known = group.some(np.array([design])), (np.full(1, np.nan),) * len(SignalPeak._fields)
+        some = {signal: peaks[signal] for signal, again in zip(peaks, spoilt[:, design], strict=True) if again}
         for peak in some.values():
-            put(peak, own, (np.full(1, np.nan),) * len(peak))
+            put(peak, own, nothing_known)
         parts = clear_of(angle[row == design], part, group.scene.period)
         follow(own, some, tuple(partial(arcs_within, clear) for clear in parts), threads)
 

@@ -43,8 +43,8 @@ EVENNESS = 1.1
 TOGGLE = 2.0
 """Status of a sample in a toggle."""
 CLEAR = 0.01
-"""Distance from a possible pole [degree] within which a quantity that has a limit there may be a quotient of rounding
-errors."""
+"""Distance from a dead centre or change point [degree] within which a quantity that has a limit there may be a quotient
+of rounding errors."""
 SPOILT = 1e-9
 """Least error, relative to a quantity, that tells a peak of rounding errors from one of the quantity."""
 KINDS = {"dead_centre": "dead_centre", "wedge": "jam"}
@@ -112,23 +112,23 @@ def poles(group: Group, signals: tuple[str, ...], threads: int | None = None) ->
 
 
 def spoilt_peaks(
-    group: Group, peaks: dict[str, tuple[Array, ...]], row: Array, pole: Array, threads: int | None = None
-) -> Array:
-    """Return which signals of which designs (signal, design) have peaks that consist of rounding errors.
+    group: Group, peaks: dict[str, tuple[Array, ...]], threads: int | None = None
+) -> tuple[Array, Array, Array]:
+    """Return which signals of which designs (signal, design) have peaks that consist of rounding errors; and of each
+    dead centre and change point, beside which they may lie, the row of its design and its angle [degree].
 
-    `peaks` are the values and the angles [degree] of each signal's peaks. Close to a possible pole, stated by its
-    design's row and its angle, a finite peak must not exceed the parabola through three samples on one side of it. The
-    poles must not be jams, as forces do rise just before these.
+    `peaks` are the values and the angles [degree] of each signal's peaks. A finite peak close to such an angle must not
+    exceed the parabola through three samples on one side of it. Jams are left out: forces do rise just before these.
     """
     signals, (value, at) = tuple(peaks), (np.stack(numbers) for numbers in zip(*peaks.values(), strict=True))
+    row, angle, _ = concatenated([_singular(group, signals, ("dead_centre",)), _change_points(group)])
     half = 0.5 * group.scene.period
-    away = np.mod(at[:, row] - pole + half, 2.0 * half) - half
+    away = np.mod(at[:, row] - angle + half, 2.0 * half) - half
     close = (np.abs(away) < CLEAR) & np.isfinite(value[:, row])
     some = np.flatnonzero(close.any(axis=0))
-    beside = np.outer([-CLEAR, CLEAR], [1.0, 2.0, 3.0])
-    angles = np.add.outer(pole[some], beside)
-    samples = group.values(signals, np.repeat(row[some], beside.size), angles.ravel(), threads)
-    first, second, third = np.moveaxis(samples.reshape(len(signals), *angles.shape), -1, 0)
+    places = np.add.outer(angle[some], np.outer([-CLEAR, CLEAR], [1.0, 2.0, 3.0]))
+    samples = group.values(signals, np.repeat(row[some], places[:1].size), places.ravel(), threads)
+    first, second, third = np.moveaxis(samples.reshape(len(signals), *places.shape), -1, 0)
     with np.errstate(invalid="ignore"):
         bend = first - 2.0 * second + third
         allowed = np.fmax(first, first + (first - second) + bend) + np.abs(bend) + SPOILT * np.abs(first)
@@ -136,19 +136,11 @@ def spoilt_peaks(
     spoilt = np.zeros(value.shape, dtype=bool)
     signal, which = np.nonzero(exceeds)
     spoilt[signal, row[some][which]] = True
-    return spoilt
-
-
-def without_jams(group: Group, row: Array, angle: Array) -> tuple[Array, Array]:
-    """Return the dead centres and change points among possible poles; both edges of a cone of friction may wedge at a
-    dead centre, too."""
-    dead_centre, jam = ((angle[:, None] == singular_angles(group, kinds=(kind,))[row]).any(axis=1) for kind in KINDS)
-    kept = dead_centre | ~jam
-    return row[kept], angle[kept]
+    return spoilt, row, angle
 
 
 def clear_of(angles: Array, part: Part | None, period: float) -> list[Part]:
-    """Return the parts between possible poles at these angles [degree], of a part of the period or of all of it."""
+    """Return the parts between these angles [degree], clear of them, of a part of the period or of all of it."""
     start, end = part or (angles[0] + CLEAR, angles[0] + period - CLEAR)
     inside = np.unique(start + np.mod(angles - start, period))
     inside = inside[inside <= end]
@@ -165,7 +157,7 @@ def designs_with_candidates(scene: Scene, designs: Array, signals: tuple[str, ..
 @singledispatch
 def pole_candidates(group: Any, signals: tuple[str, ...]) -> Candidates:
     """Return the possible poles of these signals."""
-    return concatenated([_dead_centres_and_jams(group, signals), _change_points(group)])
+    return concatenated([_singular(group, signals), _change_points(group)])
 
 
 def concatenated(parts: list[Candidates]) -> Candidates:
@@ -201,8 +193,9 @@ def designs_without_jams(scene: Scene, designs: Array) -> Array:
     return designs[~np.isfinite(singular_angles(all_at_once(scene, designs))).any(axis=1)]
 
 
-def _dead_centres_and_jams(group: Group, signals: tuple[str, ...]) -> Candidates:
-    angle = singular_angles(group, signals)
+def _singular(group: Group, signals: tuple[str, ...], kinds: Collection[str] = KINDS) -> Candidates:
+    """Return the dead centres and jams of these designs, or those of one kind."""
+    angle = singular_angles(group, signals, kinds)
     row, which = np.nonzero(np.isfinite(angle))
     return row, angle[row, which], np.full(len(row), CLOSEST)
 
