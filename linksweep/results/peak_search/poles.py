@@ -8,6 +8,7 @@ does that.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Iterator
 from functools import singledispatch
 from itertools import chain
@@ -47,6 +48,14 @@ CLEAR = 0.01
 of rounding errors."""
 SPOILT = 1e-9
 """Least error, relative to a quantity, that tells a peak of rounding errors from one of the quantity."""
+BESIDE_CLEAR = np.outer([-CLEAR, CLEAR], [1.0, 2.0, 3.0])
+"""Places of the samples of the parabolas (side, step) beside a possible pole [degree]."""
+RESOLVED = 1e-9
+"""Least distance from a possible pole [degree] that the angle of a peak tells: within as much of a period it is 0."""
+STEP = 1e-3
+"""Step between samples that tell scatter from a rise, relative to their distance from the pole."""
+SCATTER = 0.1
+"""Least fourth difference of such samples that is scatter, relative to how far a peak exceeds the parabola."""
 KINDS = {"dead_centre": "dead_centre", "wedge": "jam"}
 """Kinds of zeros that a search locates, and what closed forms call them."""
 OF_OUTPUT = ("torque_ratio", "mechanical_advantage")
@@ -115,28 +124,51 @@ def spoilt_peaks(
     group: Group, peaks: dict[str, tuple[Array, ...]], threads: int | None = None
 ) -> tuple[Array, Array, Array]:
     """Return which signals of which designs (signal, design) have peaks that consist of rounding errors; and of each
-    dead centre and change point, beside which they may lie, the row of its design and its angle [degree].
+    possible pole, beside which they may lie, the row of its design and its angle [degree].
 
-    `peaks` are the values and the angles [degree] of each signal's peaks. A finite peak close to such an angle must not
-    exceed the parabola through three samples on one side of it. Jams are left out: forces do rise just before these.
+    `peaks` are the values and the angles [degree] of each signal's peaks. A finite peak close to a possible pole is
+    spoilt if it exceeds the parabola through three samples on one side, and the signal scatters there: where it rises,
+    it does so smoothly.
     """
     signals, (value, at) = tuple(peaks), (np.stack(numbers) for numbers in zip(*peaks.values(), strict=True))
-    row, angle, _ = concatenated([_singular(group, signals, ("dead_centre",)), _change_points(group)])
+    row, angle, _ = pole_candidates(group, signals)
     half = 0.5 * group.scene.period
-    away = np.mod(at[:, row] - angle + half, 2.0 * half) - half
-    close = (np.abs(away) < CLEAR) & np.isfinite(value[:, row])
-    some = np.flatnonzero(close.any(axis=0))
-    places = np.add.outer(angle[some], np.outer([-CLEAR, CLEAR], [1.0, 2.0, 3.0]))
-    samples = group.values(signals, np.repeat(row[some], places[:1].size), places.ravel(), threads)
-    first, second, third = np.moveaxis(samples.reshape(len(signals), *places.shape), -1, 0)
+    distance = np.abs(np.mod(at[:, row] - angle + half, 2.0 * half) - half)
+
+    def values_at(signal: Array, near: Array, places: Array) -> Array:
+        """Return one signal's values about one pole each, at places (each, row, step) beside it [degree]."""
+        angles, rows = angle[near, None, None] + places, np.repeat(row[near], math.prod(places.shape[1:]))
+        values = group.values(signals, rows, angles.ravel(), threads).reshape(len(signals), *places.shape)
+        return values[signal, np.arange(len(signal))]
+
+    signal, near = np.nonzero((distance < CLEAR) & np.isfinite(value[:, row]))
     with np.errstate(invalid="ignore"):
-        bend = first - 2.0 * second + third
-        allowed = np.fmax(first, first + (first - second) + bend) + np.abs(bend) + SPOILT * np.abs(first)
-        exceeds = close[:, some] & (value[:, row[some]] > np.fmax.reduce(allowed, axis=-1))
+        excess = value[signal, row[near]] - _reached(values_at(signal, near, np.tile(BESIDE_CLEAR, (len(near), 1, 1))))
+    high = excess > 0.0
+    signal, near = signal[high], near[high]
+    places = _places_about(distance[signal, near], np.spacing(np.maximum(angle[near], 1.0)))
+    (fourth_difference,) = np.abs(np.diff(values_at(signal, near, places), n=4)).T
+    scatters = np.fmax.reduce(fourth_difference, axis=0) > SCATTER * excess[high]
     spoilt = np.zeros(value.shape, dtype=bool)
-    signal, which = np.nonzero(exceeds)
-    spoilt[signal, row[some][which]] = True
+    spoilt[signal[scatters], row[near[scatters]]] = True
     return spoilt, row, angle
+
+
+def _reached(beside: Array) -> Array:
+    """Return how high a signal may reach at a pole by the parabolas through its values (each, row, step) beside it."""
+    first, second, third = np.moveaxis(beside, -1, 0)
+    bend = first - 2.0 * second + third
+    reached = np.fmax(first, first + (first - second) + bend) + np.abs(bend) + SPOILT * np.abs(first)
+    return np.fmax.reduce(reached, axis=-1)
+
+
+def _places_about(distance: Array, least: Array) -> Array:
+    """Return places (each, row, step) beside poles [degree], on both sides, at distances like these and not nearer than
+    the least; those of each row's five steps are close to each other."""
+    nearest = np.where(distance > RESOLVED, 0.25 * distance, least)
+    distances = np.geomspace(nearest, 4.0 * np.maximum(distance, RESOLVED), 17).T
+    steps = np.maximum(STEP * distances, least[:, None])[..., None] * np.arange(5.0)
+    return np.concatenate([distances[..., None] + steps, -distances[..., None] - steps], axis=1)
 
 
 def clear_of(angles: Array, part: Part | None, period: float) -> list[Part]:

@@ -137,13 +137,25 @@ def test_forces_that_have_a_limit_at_a_change_point_are_not_rounding_errors():
     assert float(peaks.F43_peak) == pytest.approx(9.81 * r / (2.0 * a), abs=1e-5)  # other pins bear 290 N
 
 
-def test_a_crank_that_carries_nothing_past_a_dead_centre_of_the_jack():
+def test_a_crank_that_carries_nothing_past_dead_centres_and_jams_of_the_jack():
     """The jack moves all other links: at constant speed the crank's pin bears the crank's own inertia alone."""
     scene = any_linkage(AWAY_FROM_TOGGLES["Whitworth, jack drives"], np.random.default_rng(5), 20)
-    crank, passing = scene.mechanism.crank, [1, 11]  # others come to toggles
+    crank, passing = scene.mechanism.crank, [1, 5, 11, 13]  # dead centres; jams: 5, 13
     inertia = crank.mass * crank.cg_distance * scene.omega2**2
     peaks = ls.peaks(scene, of=["F12"]).F12_peak
     np.testing.assert_allclose(peaks[passing], inertia[passing], rtol=1e-9)
+
+
+def test_a_torque_with_summits_close_to_a_change_point():
+    """Almost a parallelogram, its crank and ground in one line: within 0.01° of a change point that cannot be told from
+    a toggle, the torque rises to 1e12 N·m, and falls, against 60-digit arithmetic."""
+    lengths = 0.5, 0.5 + 5e-5 + 4e-7, 0.5 + 4e-7 + 1e-11
+    data = FourBarData(*(LinkData(length, 1.0, 0.01, 0.3 * length, 20.0) for length in lengths), 0.5 + 5e-5, omega2=4.0)
+    peaks = ls.peaks(to_scene(data), of=["T12"])
+    at, torque = float(peaks.T12_max_at), float(peaks.T12_max)
+    before, there, after = (float(solve(data, at + step)["T12"]) for step in (-1e-4, 0.0, 1e-4))
+    assert torque == pytest.approx(there, rel=1e-12) and torque > 1e12 and max(before, after) < torque
+    assert float(peaks.T12_min) < float(solve(data, -1e-5)["T12"]) < -1e14
 
 
 def test_torque_ratio_is_unbounded_where_the_output_stands_still():
