@@ -17,7 +17,7 @@ from linksweep.engine.peaks.summits import might_reach
 from linksweep.engine.run import Field
 from linksweep.results.peak_search.groups import Group
 from linksweep.results.peak_search.paths import QUARTER, Part, Paths
-from linksweep.results.peak_search.poles import poles
+from linksweep.results.peak_search.poles import CLEAR, distance_from, poles
 from linksweep.scene.pairs import Array, flat_index, in_period
 
 NODES, SPANS = 10, (25.0, 5.0, 1.0, 0.2, 0.04)
@@ -25,6 +25,9 @@ NODES, SPANS = 10, (25.0, 5.0, 1.0, 0.2, 0.04)
 of a path. The first is a quarter of that to the next toggle: others may hide beyond."""
 ALLOWED = 1e-10
 """Error of a limit, relative to it, from which on samples are taken closer to the toggle."""
+STEP_AT_POLE, OF_ROUNDING, KNOWN = 0.1, 32.0, 1e-7
+"""Limits beside possible poles: the step [degree] that `SPANS` multiply, the error over the last terms of a polynomial
+through values with rounding errors, and its largest part of a limit to which a peak is raised."""
 ANGLES = (np.arange(NODES) + 0.5) * (np.pi / NODES)
 TERMS = np.cos(np.outer(ANGLES, np.arange(NODES))) * np.append(1.0, np.full(NODES - 1, 2.0)) / NODES
 """Chebyshev's angles of samples, and the terms of the polynomial through values there, at the angle 0."""
@@ -118,6 +121,34 @@ def raise_to_poles(group: Any, peaks: dict[str, SignalPeak], threads: int | None
         at = flat_index(peak.value, places, len(row))[infinite[:, k]]
         for field, values in zip(peak[:3], (np.inf, angle[infinite[:, k]], 0.0), strict=True):
             field.values.reshape(-1)[at] = values
+
+
+def raise_to_limits(
+    group: Any, peaks: dict[str, SignalPeak], row: Array, angle: Array, threads: int | None, part: Part | None = None
+) -> None:
+    """Raise finite peaks beside possible poles, by the rows of their designs and their angles [degree], to the limits
+    of their signals there: samples closer by may consist of rounding errors. `part`: as of `raise_to_poles`."""
+    if part is not None:
+        inside = in_period(angle - part[0], group.scene.period) <= part[1] - part[0]
+        row, angle = row[inside], angle[inside]
+    signals, side = tuple(peaks), np.repeat([-1.0, 1.0], len(row))
+    row, angle = np.tile(row, 2), np.tile(angle, 2)
+    known = zip(*(numbers_of(peak, group)[:2] for peak in peaks.values()), strict=True)
+    value, at = (np.stack(numbers)[:, row] for numbers in known)
+    needs = np.isfinite(value) & (distance_from(angle, at, group.scene.period) < 2.0 * CLEAR)
+
+    def values_at(which: Array, ends: Array, x: Array) -> Array:
+        places, rows = angle[ends, None] + side[ends, None] * x, np.repeat(row[ends], x.shape[1])
+        names = tuple(signals[k] for k in which)
+        return group.values(names, rows, places.ravel(), threads).reshape(-1, *x.shape)
+
+    limit, error, samples = limits_at_toggles(values_at, np.full(len(row), STEP_AT_POLE), needs)
+    beyond = OF_ROUNDING * error
+    surely_higher = (beyond <= KNOWN * np.abs(limit)) & (limit - beyond > value)
+    for k, peak in enumerate(peaks.values()):
+        ends = np.flatnonzero(surely_higher[k])
+        numbers = limit[k, ends], angle_in_period(angle[ends], group.scene.period), beyond[k, ends], samples[k, ends]
+        raise_to(peak, group.some(row[ends]), numbers)
 
 
 def _raise(peak: SignalPeak, at: Array, best: Array, best_angle: Array, best_bound: Array, taken: Array) -> None:

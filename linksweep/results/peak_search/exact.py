@@ -34,6 +34,7 @@ from linksweep.results.peak_search.along_paths import (
     nothing,
     numbers_of,
     put,
+    raise_to_limits,
     raise_to_poles,
     start_near_period,
     with_unknown_bound,
@@ -115,13 +116,13 @@ def _raise_to_poles(
             designs = designs_with_candidates(scene, designs, tuple(peaks))
         for _, group in assembled_groups(scene, tuple(peaks), designs=designs, at_once=FEW_SAMPLES_AT_ONCE):
             raise_to_poles(group, peaks, threads, part)
-            _search_again_where_spoilt(group, peaks, threads, part)
+            _clear_of_rounding_errors(group, peaks, threads, part)
 
 
-def _search_again_where_spoilt(
+def _clear_of_rounding_errors(
     group: Group, peaks: dict[str, SignalPeak], threads: int | None, part: Part | None
 ) -> None:
-    """Replace peaks of rounding errors beside dead centres and change points by those clear of these."""
+    """Replace peaks of rounding errors beside possible poles by those clear of these, or by limits there."""
     known = {signal: numbers_of(peak, group)[:2] for signal, peak in peaks.items()}
     spoilt, row, angle = spoilt_peaks(group, known, threads)
     for design in np.flatnonzero(spoilt.any(axis=0)):
@@ -131,6 +132,7 @@ def _search_again_where_spoilt(
             put(peak, own, nothing_known)
         parts = clear_of(angle[row == design], part, group.scene.period)
         follow(own, some, tuple(partial(arcs_within, clear) for clear in parts), threads)
+    raise_to_limits(group, peaks, row, angle, threads, part)
 
 
 def _by_paths(

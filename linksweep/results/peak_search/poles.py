@@ -50,7 +50,7 @@ SPOILT = 1e-9
 """Least error, relative to a quantity, that tells a peak of rounding errors from one of the quantity."""
 BESIDE_CLEAR = np.outer([-CLEAR, CLEAR], [1.0, 2.0, 3.0])
 """Places of the samples of the parabolas (side, step) beside a possible pole [degree]."""
-RESOLVED = 1e-9
+RESOLVED = 5e-6
 """Least distance from a possible pole [degree] that the angle of a peak tells: within as much of a period it is 0."""
 STEP = 1e-3
 """Step between samples that tell scatter from a rise, relative to their distance from the pole."""
@@ -132,8 +132,7 @@ def spoilt_peaks(
     """
     signals, (value, at) = tuple(peaks), (np.stack(numbers) for numbers in zip(*peaks.values(), strict=True))
     row, angle, _ = pole_candidates(group, signals)
-    half = 0.5 * group.scene.period
-    distance = np.abs(np.mod(at[:, row] - angle + half, 2.0 * half) - half)
+    distance = distance_from(angle, at[:, row], group.scene.period)
 
     def values_at(signal: Array, near: Array, places: Array) -> Array:
         """Return one signal's values about one pole each, at places (each, row, step) beside it [degree]."""
@@ -154,6 +153,11 @@ def spoilt_peaks(
     return spoilt, row, angle
 
 
+def distance_from(poles: Array, angle: Array, period: float) -> Array:
+    """Return how far angles are from poles, either way round [degree]."""
+    return np.abs(np.mod(angle - poles + 0.5 * period, period) - 0.5 * period)
+
+
 def _reached(beside: Array) -> Array:
     """Return how high a signal may reach at a pole by the parabolas through its values (each, row, step) beside it."""
     first, second, third = np.moveaxis(beside, -1, 0)
@@ -165,10 +169,11 @@ def _reached(beside: Array) -> Array:
 def _places_about(distance: Array, least: Array) -> Array:
     """Return places (each, row, step) beside poles [degree], on both sides, at distances like these and not nearer than
     the least; those of each row's five steps are close to each other."""
-    nearest = np.where(distance > RESOLVED, 0.25 * distance, least)
-    distances = np.geomspace(nearest, 4.0 * np.maximum(distance, RESOLVED), 17).T
+    nearest = np.where(distance > RESOLVED, 0.25 * distance, 0.0)
+    distances = np.geomspace(np.maximum(nearest, least), 4.0 * np.maximum(distance, RESOLVED), 33).T
     steps = np.maximum(STEP * distances, least[:, None])[..., None] * np.arange(5.0)
-    return np.concatenate([distances[..., None] + steps, -distances[..., None] - steps], axis=1)
+    from_pole = distances[..., None] - least[:, None, None] + steps  # the nearest are at the pole itself
+    return np.concatenate([from_pole, -from_pole], axis=1)
 
 
 def clear_of(angles: Array, part: Part | None, period: float) -> list[Part]:

@@ -158,6 +158,34 @@ def test_a_torque_with_summits_close_to_a_change_point():
     assert float(peaks.T12_min) < float(solve(data, -1e-5)["T12"]) < -1e14
 
 
+@pytest.mark.parametrize(
+    ("direction", "friction"), [(-60.0, 0.1), (120.0, 0.1), (-150.0, 0.1), (-90.0, 0.1), (0.0, 0.2)]
+)
+def test_crank_and_rod_of_a_press_by_its_upper_link(direction, friction):
+    """Without a torque at the crank, crank and rod bear what they bear in the four-bar of the press, which has no ram;
+    the ram's friction jams the press at both ends of its arc, and its own forces grow without bound there."""
+    crank, rod, upper = ls.Link(0.9, 0.65, 0.1, 0.2), ls.Link(2.1, 0.93, 0.74, 2.0), ls.Link(2.4, 1.5, 1.0, 1.0)
+    press = ls.Linkage(
+        "crank A-B, rod B-C, upper D-C, lower C-E, ram E on slide",
+        ground={"A": (0.0, 0.0), "D": (0.43, 0.0)},
+        guides={"slide": ls.Guide((0.43, 0.0), direction, friction)},
+        branch={"C": "open", "E": "crossed"},
+        crank=crank,
+        rod=rod,
+        upper=upper,
+        lower=ls.Link(1.3, 1.0, 0.2, 0.6),
+        ram=ls.Slider(0.6),
+    )
+    scene = ls.Scene(press, 11.6, gravity=(0.0, -9.81), drive="upper")
+    four_bar = ls.Scene(ls.FourBar(crank, rod, upper, ground=0.43), 11.6, gravity=(0.0, -9.81), drive="rocker")
+    peaks, moves = ls.peaks(scene, of=["F12", "F32"]), ls.sweep(scene, 5760, of=["status"]).status == 0
+    samples = ls.sweep(four_bar, 5760, of=["F12", "F32"]).where(moves).max()
+    for force in ("F12", "F32"):
+        peak, at = float(peaks[f"{force}_peak"]), [float(peaks[f"{force}_peak_at"])]
+        assert peak == pytest.approx(float(ls.sweep(four_bar, at, of=[force])[force][0]), rel=1e-8)
+        assert peak > float(samples[force]) * (1.0 - 1e-9)
+
+
 def test_torque_ratio_is_unbounded_where_the_output_stands_still():
     """The torque ratio is the inverse of the rocker's rate, which changes sign where it turns round."""
     mechanism = machines(17.3)["omega4 of the press"][0]
