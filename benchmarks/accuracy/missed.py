@@ -287,6 +287,11 @@ def _inverted_slider_crank(random: Random, n: int) -> ls.Scene:
     return _scene(random, n, mechanism, [ls.Load("rocker", torque=3.0)])
 
 
+def _by(drive: str, machines: Callable[[Random, int], ls.Scene]) -> Callable[[Random, int], ls.Scene]:
+    """Return machines that another link drives; most come to dead centres, where forces are unbounded."""
+    return lambda random, n: replace(machines(random, n), drive=drive)
+
+
 def _with_table(machines: Callable[[Random, int], ls.Scene], link: str) -> Callable[[Random, int], ls.Scene]:
     def scene(random: Random, n: int) -> ls.Scene:
         """Return machines with a torque and a force over the angle besides, each design with values of its own."""
@@ -360,6 +365,9 @@ FAMILIES = {
     "six-bar of any lengths": Family(_any_six_bar, share=0.5),
     "knuckle-joint press with friction": Family(_press, share=0.5),
     "knuckle-joint press of any lengths": Family(_any_press, share=0.5),
+    "four-bar by its rocker": Family(_by("rocker", _four_bar)),
+    "inverted slider-crank by its rocker": Family(_by("rocker", _inverted_slider_crank)),
+    "press of any lengths by its upper link": Family(_by("upper", _any_press), share=0.1),
     "four-bar with a table": Family(_with_table(_four_bar, "rocker")),
     "slider-crank with friction and a table": Family(_with_table(_slider_crank(friction=True), "slider"), 90.0),
     "four-bar with a function": Family(_with_function(_four_bar, "rocker")),

@@ -22,7 +22,7 @@ SIGNALS_AT_ONCE = 16
 """Signals searched together."""
 PIECES_TOGETHER = 192
 """Pieces that are searched together, at least, in whole blocks of designs: their samples stay in the caches."""
-OF_TURNS = (*[INTEGER] * 5, *OF_DESIGNS, TABLE, TABLE, ROW, TABLE)
+OF_TURNS = (*[INTEGER] * 6, *OF_DESIGNS, TABLE, TABLE, ROW, TABLE)
 OF_PIECES = (*[INTEGER] * 4, INTEGERS, *ON_PIECES, TABLE, TABLE, ROW, TABLE, TABLE, ROW, TABLE, TABLE)
 OF_ZEROS = (*[INTEGER] * 4, INTEGERS, *ON_PIECES, TABLE, ROW, "f8[:, :, :]")
 """Kinds of the arguments of `turns.search`, `on_pieces.search` and `zeros.find_zeros`."""
@@ -53,12 +53,18 @@ class PeaksOnPieces(NamedTuple):
 
 
 def find_peaks(
-    plan: Plan, signals: tuple[str, ...], inputs: Fields, sizes: Sizes, smooth: bool, threads: int | None
+    plan: Plan,
+    signals: tuple[str, ...],
+    inputs: Fields,
+    sizes: Sizes,
+    smooth: bool,
+    sparse: bool,
+    threads: int | None,
 ) -> list[Peaks]:
     """Return the largest value of each signal over the turn, for every design; `smooth` tells that none has jumps or
-    kinks."""
+    kinks, `sparse` that summits may lie between neighbouring samples."""
     requests = _requests(plan, signals)
-    return [_peaks(request, laid_out(request, inputs, sizes), smooth, threads) for request in requests]
+    return [_peaks(request, laid_out(request, inputs, sizes), smooth, sparse, threads) for request in requests]
 
 
 @lru_cache(maxsize=64)
@@ -74,7 +80,7 @@ def _requests(plan: Plan, signals: tuple[str, ...]) -> list[Plan]:
     ]
 
 
-def _peaks(plan: Plan, designs: LaidOut, smooth: bool, threads: int | None) -> Peaks:
+def _peaks(plan: Plan, designs: LaidOut, smooth: bool, sparse: bool, threads: int | None) -> Peaks:
     """Return the peaks of a plan's signals, which all have the same dims."""
     signals, lanes, blocks = designs.signals, designs.lanes, designs.blocks
     run, columns = designs.run(turns.search, OF_TURNS), lanes * len(signals)
@@ -82,7 +88,7 @@ def _peaks(plan: Plan, designs: LaidOut, smooth: bool, threads: int | None) -> P
 
     def work(first: int, last: int) -> None:
         run(
-            first, last, designs.designs, lanes, smooth, *designs.arguments(first, last),
+            first, last, designs.designs, lanes, smooth, sparse, *designs.arguments(first, last),
             np.empty((turns.STATE_ROWS, columns)), np.empty((BRACKET_ROWS, turns.ROOM)), designs.gathered, best,
         )  # fmt: skip
 

@@ -56,11 +56,12 @@ NOTHING_YET = {SUMMIT: 0.0, REACH: -math.inf, OTHER: -math.inf}
 
 
 def search(
-    first, last, designs, lanes, smooth, sizes, parameters, parameter_at, grades, prepare, share, sample, evaluate,
-    constants, x, rows, state, brackets, gathered, best
+    first, last, designs, lanes, smooth, sparse, sizes, parameters, parameter_at, grades, prepare, share, sample,
+    evaluate, constants, x, rows, state, brackets, gathered, best
 ):  # fmt: skip
     """Write the peaks of blocks `first` … `last` of designs to `best`: a column for each design of each signal, one
-    signal after the other, each filled up to whole blocks. A peak's place is its angle from the near-toggle."""
+    signal after the other, each filled up to whole blocks. A peak's place is its angle from the near-toggle. `sparse`
+    tells that samples may lie too far apart in every design, as they do in those with narrow near-toggles."""
     columns = state.shape[1]
     signals, samples = columns // lanes, (rows, x, HALF, lanes, columns)
     width = best.shape[1] // signals
@@ -85,13 +86,14 @@ def search(
                 for row in range(EVALUATIONS + 1):
                     copy_lanes(state, row, column, best, tag, lanes)
                 for lane in range(lanes):
-                    close = min(own[lane], own[lanes + lane]) < NARROW
+                    close = sparse or min(own[lane], own[lanes + lane]) < NARROW
                     if close or not smooth or state[FINAL, column + lane] == 0.0:
                         if count + 2 * SAMPLES > brackets.shape[1]:
                             refine(brackets, count, lanes, width, start * lanes, constants, gathered, evaluate, best)
                             count = 0
                         k = column + lane
-                        known = int(state[SUMMIT, k]) if smooth and state[CONFIRMED, k] > 0.0 else -1
+                        trusted = smooth and not sparse and state[CONFIRMED, k] > 0.0
+                        known = int(state[SUMMIT, k]) if trusted else -1
                         count = open_brackets(
                             samples, signal, lane, known, False, close, tag + lane, brackets, count, best
                         )

@@ -281,10 +281,11 @@ def _fused(
     """Return peaks of these designs from the search inside the kernel; those of others are NaN."""
     if not signals:
         return {}
+    sparse = scene.drive != scene.mechanism.defaults.get("drive", "")  # forces over the rate of another drive vary more
     if len(designs) == math.prod(scene.inputs.sizes.values()):
         inputs = scene.inputs
         request = _between_samples(scene, signals)
-        results = find_peaks(request, signals, inputs.fields, inputs.sizes, smooth, threads)
+        results = find_peaks(request, signals, inputs.fields, inputs.sizes, smooth, sparse, threads)
         return {signal: peak for some in results for signal, peak in _at_angles(scene, some).items()}
     peaks = {signal: nothing(field) for signal, field in empty(scene, signals).items()}
     places = ((TANGENT, (scene.mechanism.index, ONE)), (FAR, (scene.mechanism.index,)))
@@ -292,7 +293,7 @@ def _fused(
         rows, middle = np.arange(len(group.designs)), group.number(scene.mechanism.near_toggle_angle)
         names = (*signals, NEAR_WIDTH, FAR_WIDTH)
         request, inputs_of_group = group.one_by_one(scene.table.between_samples, names, rows, {}, places)
-        for some in find_peaks(request, signals, inputs_of_group, {ONE: len(rows)}, smooth, threads):
+        for some in find_peaks(request, signals, inputs_of_group, {ONE: len(rows)}, smooth, sparse, threads):
             angles = angle_in_period(some.angle + middle, scene.period)
             for signal, *numbers in zip(some.signals, some.value, angles, some.beyond, some.evaluations, strict=True):
                 put(peaks[signal], group, tuple(numbers))

@@ -234,7 +234,7 @@ def test_of_three_summits_nearly_as_high_the_highest_is_the_peak():
     one = np.array([0], dtype=np.int64)
     with np.errstate(all="ignore"):
         turns.search(
-            0, len(phase), len(phase), 1, True, np.array([len(phase)]), phase, one, grades(), prepare, share,
+            0, len(phase), len(phase), 1, True, False, np.array([len(phase)]), phase, one, grades(), prepare, share,
             sample, evaluate, np.zeros((turns.BLOCKS, 3)), np.zeros(2 * PLACED), np.zeros(SAMPLES + 1),
             np.zeros((turns.STATE_ROWS, 1)), np.zeros((BRACKET_ROWS, turns.ROOM)), np.zeros(3), best,
         )  # fmt: skip
