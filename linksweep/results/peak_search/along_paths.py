@@ -17,7 +17,7 @@ from linksweep.engine.peaks.summits import might_reach
 from linksweep.engine.run import Field
 from linksweep.results.peak_search.groups import Group
 from linksweep.results.peak_search.paths import QUARTER, Part, Paths
-from linksweep.results.peak_search.poles import CLEAR, distance_from, poles
+from linksweep.results.peak_search.poles import CLEAR, poles, signed_distance
 from linksweep.scene.pairs import Array, flat_index, in_period
 
 NODES, SPANS = 10, (25.0, 5.0, 1.0, 0.2, 0.04)
@@ -135,7 +135,7 @@ def raise_to_limits(
     row, angle = np.tile(row, 2), np.tile(angle, 2)
     known = zip(*(numbers_of(peak, group)[:2] for peak in peaks.values()), strict=True)
     value, at = (np.stack(numbers)[:, row] for numbers in known)
-    needs = np.isfinite(value) & (distance_from(angle, at, group.scene.period) < 2.0 * CLEAR)
+    needs = np.isfinite(value) & (np.abs(signed_distance(angle, at, group.scene.period)) < 2.0 * CLEAR)
 
     def values_at(which: Array, ends: Array, x: Array) -> Array:
         places, rows = angle[ends, None] + side[ends, None] * x, np.repeat(row[ends], x.shape[1])

@@ -132,7 +132,7 @@ def spoilt_peaks(
     """
     signals, (value, at) = tuple(peaks), (np.stack(numbers) for numbers in zip(*peaks.values(), strict=True))
     row, angle, _ = pole_candidates(group, signals)
-    distance = distance_from(angle, at[:, row], group.scene.period)
+    away = signed_distance(angle, at[:, row], group.scene.period)
 
     def values_at(signal: Array, near: Array, places: Array) -> Array:
         """Return one signal's values about one pole each, at places (each, row, step) beside it [degree]."""
@@ -140,12 +140,12 @@ def spoilt_peaks(
         values = group.values(signals, rows, angles.ravel(), threads).reshape(len(signals), *places.shape)
         return values[signal, np.arange(len(signal))]
 
-    signal, near = np.nonzero((distance < CLEAR) & np.isfinite(value[:, row]))
+    signal, near = np.nonzero((np.abs(away) < CLEAR) & np.isfinite(value[:, row]))
     with np.errstate(invalid="ignore"):
         excess = value[signal, row[near]] - _reached(values_at(signal, near, np.tile(BESIDE_CLEAR, (len(near), 1, 1))))
     high = excess > 0.0
     signal, near = signal[high], near[high]
-    places = _places_about(distance[signal, near], np.spacing(np.maximum(angle[near], 1.0)))
+    places = _places_about(away[signal, near], np.spacing(np.maximum(angle[near], 1.0)))
     (fourth_difference,) = np.abs(np.diff(values_at(signal, near, places), n=4)).T
     scatters = np.fmax.reduce(fourth_difference, axis=0) > SCATTER * excess[high]
     spoilt = np.zeros(value.shape, dtype=bool)
@@ -153,9 +153,10 @@ def spoilt_peaks(
     return spoilt, row, angle
 
 
-def distance_from(poles: Array, angle: Array, period: float) -> Array:
-    """Return how far angles are from poles, either way round [degree]."""
-    return np.abs(np.mod(angle - poles + 0.5 * period, period) - 0.5 * period)
+def signed_distance(poles: Array, angle: Array, period: float) -> Array:
+    """Return how far angles lie from poles, the shorter way round [degree]."""
+    distance = angle - poles
+    return distance - period * np.round(distance / period)
 
 
 def _reached(beside: Array) -> Array:
@@ -166,14 +167,15 @@ def _reached(beside: Array) -> Array:
     return np.fmax.reduce(reached, axis=-1)
 
 
-def _places_about(distance: Array, least: Array) -> Array:
-    """Return places (each, row, step) beside poles [degree], on both sides, at distances like these and not nearer than
-    the least; those of each row's five steps are close to each other."""
-    nearest = np.where(distance > RESOLVED, 0.25 * distance, 0.0)
-    distances = np.geomspace(np.maximum(nearest, least), 4.0 * np.maximum(distance, RESOLVED), 33).T
-    steps = np.maximum(STEP * distances, least[:, None])[..., None] * np.arange(5.0)
-    from_pole = distances[..., None] - least[:, None, None] + steps  # the nearest are at the pole itself
-    return np.concatenate([from_pole, -from_pole], axis=1)
+def _places_about(away: Array, least: Array) -> Array:
+    """Return places (each, row, step) beside poles [degree]: on both sides at distances like those of peaks, and from
+    the peaks on; those of each row's five steps are close to each other, and differ by the least step."""
+    distance = np.abs(away)
+    nearest = np.where(distance > RESOLVED, 0.25 * distance, least)
+    distances = np.geomspace(nearest, 4.0 * np.maximum(distance, RESOLVED), 33).T
+    sides = np.concatenate([distances, -distances, away[:, None], away[:, None]], axis=1)
+    forth = np.repeat([1.0, -1.0, 1.0, -1.0], [33, 33, 1, 1])
+    return sides[..., None] + (forth * np.maximum(STEP * np.abs(sides), least[:, None]))[..., None] * np.arange(5.0)
 
 
 def clear_of(angles: Array, part: Part | None, period: float) -> list[Part]:
