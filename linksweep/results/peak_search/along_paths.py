@@ -17,7 +17,7 @@ from linksweep.engine.peaks.summits import might_reach
 from linksweep.engine.run import Field
 from linksweep.results.peak_search.groups import Group
 from linksweep.results.peak_search.paths import QUARTER, Part, Paths
-from linksweep.results.peak_search.poles import CLEAR, poles, signed_distance
+from linksweep.results.peak_search.poles import CLEAR, Singular, poles, signed_distance
 from linksweep.scene.pairs import Array, flat_index, in_period
 
 NODES, SPANS = 10, (25.0, 5.0, 1.0, 0.2, 0.04)
@@ -25,7 +25,7 @@ NODES, SPANS = 10, (25.0, 5.0, 1.0, 0.2, 0.04)
 of a path. The first is a quarter of that to the next toggle: others may hide beyond."""
 ALLOWED = 1e-10
 """Error of a limit, relative to it, from which on samples are taken closer to the toggle."""
-STEP_AT_POLE, OF_ROUNDING, KNOWN = 0.1, 32.0, 1e-7
+STEP_AT_POLE, OF_ROUNDING, KNOWN = 0.1, 32.0, 1e-3
 """Limits beside possible poles: the step [degree] that `SPANS` multiply, the error over the last terms of a polynomial
 through values with rounding errors, and its largest part of a limit to which a peak is raised."""
 ANGLES = (np.arange(NODES) + 0.5) * (np.pi / NODES)
@@ -124,31 +124,33 @@ def raise_to_poles(group: Any, peaks: dict[str, SignalPeak], threads: int | None
 
 
 def raise_to_limits(
-    group: Any, peaks: dict[str, SignalPeak], row: Array, angle: Array, threads: int | None, part: Part | None = None
+    group: Any, peaks: dict[str, SignalPeak], places: Singular, threads: int | None, part: Part | None = None
 ) -> None:
-    """Raise finite peaks beside possible poles, by the rows of their designs and their angles [degree], to the limits
-    of their signals there: samples closer by may consist of rounding errors. `part`: as of `raise_to_poles`."""
+    """Raise finite peaks beside singular places to the limits of their signals there, or their bounds, where these are
+    not known as well: samples closer by may consist of rounding errors. `part`: as of `raise_to_poles`."""
     if part is not None:
-        inside = in_period(angle - part[0], group.scene.period) <= part[1] - part[0]
-        row, angle = row[inside], angle[inside]
-    signals, side = tuple(peaks), np.repeat([-1.0, 1.0], len(row))
-    row, angle = np.tile(row, 2), np.tile(angle, 2)
+        inside = in_period(places.angle - part[0], group.scene.period) <= part[1] - part[0]
+        places = Singular(*(numbers[inside] for numbers in places))
+    signals, side = tuple(peaks), np.repeat([-1.0, 1.0], len(places.row))
+    row, angle = np.tile(places.row, 2), np.tile(places.angle, 2)
     known = zip(*(numbers_of(peak, group)[:2] for peak in peaks.values()), strict=True)
     value, at = (np.stack(numbers)[:, row] for numbers in known)
     needs = np.isfinite(value) & (np.abs(signed_distance(angle, at, group.scene.period)) < 2.0 * CLEAR)
 
     def values_at(which: Array, ends: Array, x: Array) -> Array:
-        places, rows = angle[ends, None] + side[ends, None] * x, np.repeat(row[ends], x.shape[1])
+        angles, rows = angle[ends, None] + side[ends, None] * x, np.repeat(row[ends], x.shape[1])
         names = tuple(signals[k] for k in which)
-        return group.values(names, rows, places.ravel(), threads).reshape(-1, *x.shape)
+        return group.values(names, rows, angles.ravel(), threads).reshape(-1, *x.shape)
 
     limit, error, samples = limits_at_toggles(values_at, np.full(len(row), STEP_AT_POLE), needs)
     beyond = OF_ROUNDING * error
-    surely_higher = (beyond <= KNOWN * np.abs(limit)) & (limit - beyond > value)
+    higher = (beyond <= KNOWN * np.abs(limit)) & (limit - beyond > value)
+    with np.errstate(invalid="ignore"):  # of limits that are not known
+        bound = np.where(higher, beyond, np.maximum(limit + beyond - value, 0.0))
+    height, at = np.where(higher, limit, value), np.where(higher, angle_in_period(angle, group.scene.period), at)
     for k, peak in enumerate(peaks.values()):
-        ends = np.flatnonzero(surely_higher[k])
-        numbers = limit[k, ends], angle_in_period(angle[ends], group.scene.period), beyond[k, ends], samples[k, ends]
-        raise_to(peak, group.some(row[ends]), numbers)
+        ends = np.flatnonzero(needs[k] & (error[k] < np.inf))
+        raise_to(peak, group.some(row[ends]), tuple(table[k, ends] for table in (height, at, bound, samples)))
 
 
 def _raise(peak: SignalPeak, at: Array, best: Array, best_angle: Array, best_bound: Array, taken: Array) -> None:

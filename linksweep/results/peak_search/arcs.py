@@ -41,6 +41,9 @@ NEIGHBOURS = np.array([-1.0, 0.0, 1.0])
 LONGEST_PIECE = 180.0
 """Longest piece of a part that one path follows [degree]."""
 
+Parts = tuple[Array, Array]
+"""A part of each design: first and last angles [degree], NaN for none."""
+
 
 @singledispatch
 def arc_ends(group: Any) -> tuple[Array, ...]:
@@ -59,8 +62,9 @@ def arcs(group: Group) -> Paths:
     return _along(group, arc_ends(group), arc_ends(group))
 
 
-def arcs_within(part: Part, group: Group, pieces: int = 1) -> Paths:
-    """Return the arcs or turns of each design between two angles [degree], in this number of equal pieces at least."""
+def arcs_within(part: Part | Parts, group: Group, pieces: int = 1) -> Paths:
+    """Return the arcs or turns of each design between two angles [degree], or those of its own part, in this number
+    of equal pieces at least."""
     toggles = arc_ends(group)
     none = (np.full((len(group.designs), 1), np.nan),) * 2
     return _along(group, _pieces(group, part, toggles, pieces), toggles or none, closely=True)
@@ -99,18 +103,20 @@ def _along(group: Group, ends: tuple[Array, ...], toggles: tuple[Array, ...], cl
     return paths.some(_ok_somewhere(group, paths))
 
 
-def _pieces(group: Group, part: Part, toggles: tuple[Array, ...], pieces: int) -> tuple[Array, ...]:
+def _pieces(group: Group, part: Part | Parts, toggles: tuple[Array, ...], pieces: int) -> tuple[Array, ...]:
     """Return starts and ends (design, piece) of a part, where a design can be assembled [degree]; NaN for no piece."""
-    pieces *= math.ceil((part[1] - part[0]) / (pieces * LONGEST_PIECE))
-    edges = np.linspace(*part, 1 + pieces)[:, None]
+    first, last = (np.broadcast_to(edge, len(group.designs)) for edge in part)
+    longest = np.fmax.reduce(last - first, initial=LONGEST_PIECE)
+    pieces *= math.ceil(longest / (pieces * LONGEST_PIECE))
+    edges = np.linspace(first, last, 1 + pieces, axis=-1)[:, None, :, None]
     kind = group.assembly()
     whole = (kind[:, None] == EVERYWHERE) | (not toggles)
     period = group.scene.period_of_motion
     turn = [np.where(whole, ends, np.nan) for ends in (0.0, period)]
     arcs = [np.where(whole, np.nan, ends) for ends in toggles or (np.nan, np.nan)]
     start, end = (np.concatenate(ends, axis=1)[..., None, None] for ends in zip(turn, arcs, strict=True))
-    away = period * (np.round((edges[:-1] - start) / period) + NEIGHBOURS)
-    first, last = np.maximum(start + away, edges[:-1]), np.minimum(end + away, edges[1:])
+    away = period * (np.round((edges[:, :, :-1] - start) / period) + NEIGHBOURS)
+    first, last = np.maximum(start + away, edges[:, :, :-1]), np.minimum(end + away, edges[:, :, 1:])
     return tuple(np.where(first < last, ends, np.nan).reshape(len(kind), -1) for ends in (first, last))
 
 

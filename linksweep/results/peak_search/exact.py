@@ -56,7 +56,9 @@ from linksweep.results.peak_search.poles import (
     clear_of,
     designs_with_candidates,
     designs_without_jams,
+    driven_elsewhere,
     may_have_poles,
+    singular_places,
     spoilt_peaks,
 )
 from linksweep.scene.dimensions import aligned
@@ -122,17 +124,24 @@ def _raise_to_poles(
 def _clear_of_rounding_errors(
     group: Group, peaks: dict[str, SignalPeak], threads: int | None, part: Part | None
 ) -> None:
-    """Replace peaks of rounding errors beside possible poles by those clear of these, or by limits there."""
-    known = {signal: numbers_of(peak, group)[:2] for signal, peak in peaks.items()}
-    spoilt, row, angle = spoilt_peaks(group, known, threads)
-    for design in np.flatnonzero(spoilt.any(axis=0)):
-        own, nothing_known = group.some(np.array([design])), (np.full(1, np.nan),) * len(SignalPeak._fields)
-        some = {signal: peaks[signal] for signal, again in zip(peaks, spoilt[:, design], strict=True) if again}
-        for peak in some.values():
-            put(peak, own, nothing_known)
-        parts = clear_of(angle[row == design], part, group.scene.period)
-        follow(own, some, tuple(partial(arcs_within, clear) for clear in parts), threads)
-    raise_to_limits(group, peaks, row, angle, threads, part)
+    """Replace peaks of rounding errors beside singular places by those clear of these, or by limits there."""
+    signals, places = tuple(peaks), singular_places(group, tuple(peaks))
+    left_out = np.zeros((len(signals), len(places.row)), dtype=bool)
+    among = np.ones((len(signals), len(group.designs)), dtype=bool)
+    while among.any():  # each time clear of more places
+        known = {signal: numbers_of(peak, group)[:2] for signal, peak in peaks.items()}
+        spoilt = spoilt_peaks(group, places, known, among, threads) & ~left_out
+        left_out |= spoilt
+        among[...] = False
+        for k in np.flatnonzero(spoilt.any(axis=1)):
+            designs = np.unique(places.row[spoilt[k]])
+            among[k, designs] = True
+            own, peak = group.some(designs), peaks[signals[k]]
+            put(peak, own, (np.full(len(designs), np.nan),) * len(SignalPeak._fields))
+            parts = clear_of(places.angles_of(designs, left_out[k]), part, group.scene.period)
+            paths = tuple(partial(arcs_within, ends) for ends in zip(*parts, strict=True))
+            follow(own, {signals[k]: peak}, paths, threads)
+    raise_to_limits(group, peaks, places, threads, part)
 
 
 def _by_paths(
@@ -281,7 +290,7 @@ def _fused(
     """Return peaks of these designs from the search inside the kernel; those of others are NaN."""
     if not signals:
         return {}
-    sparse = scene.drive != scene.mechanism.defaults.get("drive", "")  # forces over the rate of another drive vary more
+    sparse = driven_elsewhere(scene)  # forces over the rate of another drive vary more
     if len(designs) == math.prod(scene.inputs.sizes.values()):
         inputs = scene.inputs
         request = _between_samples(scene, signals)

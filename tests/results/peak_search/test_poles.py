@@ -178,9 +178,37 @@ def test_crank_and_rod_of_a_press_by_its_upper_link(direction, friction):
     )
     scene = ls.Scene(press, 11.6, gravity=(0.0, -9.81), drive="upper")
     four_bar = ls.Scene(ls.FourBar(crank, rod, upper, ground=0.43), 11.6, gravity=(0.0, -9.81), drive="rocker")
-    peaks, moves = ls.peaks(scene, of=["F12", "F32"]), ls.sweep(scene, 5760, of=["status"]).status == 0
-    samples = ls.sweep(four_bar, 5760, of=["F12", "F32"]).where(moves).max()
-    for force in ("F12", "F32"):
+    compare_with_four_bar(scene, four_bar, ["F12", "F32"])
+
+
+@pytest.mark.parametrize("drive", ["output", "rocker"])
+def test_crank_and_coupler_of_a_six_bar_by_its_output(drive):
+    """Likewise where a second dyad on the rocker ends the arcs: the drive's torque and the other forces are unbounded
+    there."""
+    crank, coupler = ls.Link(2.49, 1.41, 0.903, 0.825), ls.Link(2.38, 1.46, 1.15, 0.845, 105.0)
+    rocker = ls.Link(2.7, 1.5, 0.293, 2.39, 60.9)
+    six_bar = ls.Linkage(
+        "crank A-B, coupler B-C, rocker D-C-E, rod E-F, output G-F",
+        ground={"A": (0.0, 0.0), "D": (0.45, 0.0), "G": (-1.36, 0.866)},
+        points={"E": (0.97, -92.0)},
+        branch={"C": "open", "F": "crossed"},
+        crank=crank,
+        coupler=coupler,
+        rocker=rocker,
+        rod=ls.Link(0.573, 1.43, 0.073, 0.624, -154.0),
+        output=ls.Link(0.65, 0.283, 0.0092, 0.34),
+    )
+    four_bar = ls.Scene(ls.FourBar(crank, coupler, rocker, 0.45), 12.3, -70.9, drive="rocker")
+    scene = ls.Scene(six_bar, 12.3, -70.9, drive=drive)
+    assert float(ls.peaks(scene, of=["F65"]).F65_peak) == math.inf
+    compare_with_four_bar(scene, four_bar, ["F12", "F32", "F43"])
+
+
+def compare_with_four_bar(scene, four_bar, forces):
+    """Peaks are the four-bar's forces at their angles, and no lower than its samples where the machine moves."""
+    peaks, moves = ls.peaks(scene, of=forces), ls.sweep(scene, 5760, of=["status"]).status == 0
+    samples = ls.sweep(four_bar, 5760, of=forces).where(moves).max()
+    for force in forces:
         peak, at = float(peaks[f"{force}_peak"]), [float(peaks[f"{force}_peak_at"])]
         assert peak == pytest.approx(float(ls.sweep(four_bar, at, of=[force])[force][0]), rel=1e-8)
         assert peak > float(samples[force]) * (1.0 - 1e-9)
