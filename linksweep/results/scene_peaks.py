@@ -38,8 +38,8 @@ from linksweep.results.peak_search.friction.motion import of_free_angles
 from linksweep.results.peak_search.groups import Group, all_at_once, different, empty
 from linksweep.results.peak_search.limits import assembly_of
 from linksweep.results.peak_search.paths import Part
-from linksweep.results.peak_search.poles import with_dead_centres
 from linksweep.results.peak_search.quadrature import Power, means
+from linksweep.results.peak_search.singular.poles import with_dead_centres
 from linksweep.scene.at_sections import with_sections
 from linksweep.scene.dimensions import aligned, side_by_side
 from linksweep.scene.grid import in_order

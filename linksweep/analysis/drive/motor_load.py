@@ -24,7 +24,7 @@ from linksweep.results.peak_search.arcs import arcs_within
 from linksweep.results.peak_search.exact import paths_of
 from linksweep.results.peak_search.groups import Group, assembled_groups, empty_over_all
 from linksweep.results.peak_search.paths import Part, Paths
-from linksweep.results.peak_search.poles import may_have_poles, poles
+from linksweep.results.peak_search.singular.poles import may_have_poles, poles
 from linksweep.results.sweep import sweep
 from linksweep.scene.grid import crank_grid
 from linksweep.scene.pairs import Array, in_period

@@ -27,7 +27,7 @@ from linksweep.results.peak_search.arcs import arc_ends
 from linksweep.results.peak_search.between import EVERYWHERE, NEVER
 from linksweep.results.peak_search.groups import Group, assembled_groups, empty, empty_over_all, groups
 from linksweep.results.peak_search.paths import ASIDE, Paths, about_approaches, jump_angles, neighbours, turns
-from linksweep.results.peak_search.poles import Candidates, concatenated, may_have_poles, pole_candidates
+from linksweep.results.peak_search.singular.poles import Candidates, concatenated, may_have_poles, pole_candidates
 from linksweep.scene.pairs import Array, Places, in_period
 from linksweep.scene.scene import Scene
 

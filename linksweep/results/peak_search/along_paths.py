@@ -17,7 +17,8 @@ from linksweep.engine.peaks.summits import might_reach
 from linksweep.engine.run import Field
 from linksweep.results.peak_search.groups import Group
 from linksweep.results.peak_search.paths import QUARTER, Part, Paths
-from linksweep.results.peak_search.poles import CLEAR, Singular, poles, signed_distance
+from linksweep.results.peak_search.singular.poles import poles
+from linksweep.results.peak_search.singular.rounding_errors import CLEAR, Singular, signed_distance
 from linksweep.scene.pairs import Array, flat_index, in_period
 
 NODES, SPANS = 10, (25.0, 5.0, 1.0, 0.2, 0.04)

@@ -52,12 +52,10 @@ from linksweep.results.peak_search.pieces import (
     known_on_pieces,
     rubbing_signals,
 )
-from linksweep.results.peak_search.poles import (
+from linksweep.results.peak_search.singular.poles import designs_with_candidates, designs_without_jams, may_have_poles
+from linksweep.results.peak_search.singular.rounding_errors import (
     clear_of,
-    designs_with_candidates,
-    designs_without_jams,
     driven_elsewhere,
-    may_have_poles,
     singular_places,
     spoilt_peaks,
 )

@@ -30,7 +30,7 @@ from linksweep.results.peak_search.pieces import (
     known_on_pieces,
     values_at,
 )
-from linksweep.results.peak_search.poles import designs_without_jams
+from linksweep.results.peak_search.singular.poles import designs_without_jams
 from linksweep.scene.pairs import Array, in_order, some_of
 from linksweep.scene.scene import Scene
 

@@ -8,11 +8,10 @@ does that.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Collection, Iterator
 from functools import singledispatch
 from itertools import chain
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -20,12 +19,10 @@ from linksweep.chains.finding import Finding
 from linksweep.engine.quantity import regardless_of_jams
 from linksweep.engine.run import Field
 from linksweep.results.compute import surely_ok
-from linksweep.results.peak_search.arcs import arc_ends
 from linksweep.results.peak_search.between import PARTLY
 from linksweep.results.peak_search.friction.jams import jammed_designs, may_jam
 from linksweep.results.peak_search.groups import Group, all_at_once
 from linksweep.results.peak_search.limits import limits_of
-from linksweep.results.peak_search.paths import Part
 from linksweep.scene.dimensions import side_by_side
 from linksweep.scene.pairs import Array
 from linksweep.scene.scene import Scene
@@ -44,24 +41,6 @@ EVENNESS = 1.1
 """Factor by which the growths over two halvings differ at most: of a power they are equal."""
 TOGGLE = 2.0
 """Status of a sample in a toggle."""
-CLEAR = 0.01
-"""Distance from a dead centre or change point [degree] within which a quantity that has a limit there may be a quotient
-of rounding errors."""
-SPOILT = 1e-9
-"""Least error, relative to a quantity, that tells a peak of rounding errors from one of the quantity."""
-BESIDE_CLEAR = np.outer([-CLEAR, CLEAR], [1.0, 2.0, 3.0])
-"""Places of the samples of the parabolas (side, step) beside a possible pole [degree]."""
-RESOLVED = 5e-6
-"""Least distance from a possible pole [degree] that the angle of a peak tells: within as much of a period it is 0."""
-DISTANCES = 33
-"""Number of distances from a singular place at which samples tell scatter from a rise."""
-LEAST_OF_INFINITE, SMOOTH, GROWN = 1e-9, 0.01, 3.0
-"""Least distance of samples from the end of an arc where a peak is infinite [degree]; their scatter, relative to their
-size, up to which they are smooth; and how much they grow up to there where the peak is no rounding error."""
-STEP = 1e-3
-"""Step between samples that tell scatter from a rise, relative to their distance from the pole."""
-SCATTER = 0.1
-"""Least fourth difference of such samples that is scatter, relative to how far a peak exceeds the parabola."""
 KINDS = {"dead_centre": "dead_centre", "wedge": "jam"}
 """Kinds of zeros that a search locates, and what closed forms call them."""
 OF_OUTPUT = ("torque_ratio", "mechanical_advantage")
@@ -124,132 +103,6 @@ def poles(group: Group, signals: tuple[str, ...], threads: int | None = None) ->
         values = group.values(signals, rows, angles.ravel(), threads).reshape(len(signals), *angles.shape)
         infinite = _grows_as_a_power(np.abs(values)) & (values[..., 0] > 0.0)
     return row, angle, np.any(infinite, axis=-1).T
-
-
-class Singular(NamedTuple):
-    """Angles beside which samples may consist of rounding errors: the row of the design in its group, the angle
-    [degree], and whether an arc ends there."""
-
-    row: Array
-    angle: Array
-    ends_arc: Array
-
-    def angles_of(self, designs: Array, chosen: Array) -> Array:
-        """Return the chosen angles of some designs (design, nth) [degree], NaN for none."""
-        place = np.flatnonzero(chosen & np.isin(self.row, designs))
-        place = place[np.argsort(self.row[place], kind="stable")]
-        own = np.searchsorted(designs, self.row[place])
-        nth = np.arange(len(own)) - np.searchsorted(own, own)
-        angles = np.full((len(designs), 1 + nth.max(initial=0)), np.nan)
-        angles[own, nth] = self.angle[place]
-        return angles
-
-
-def singular_places(group: Group, signals: tuple[str, ...]) -> Singular:
-    """Return the possible poles of these designs; and the ends of their arcs, unless the crank drives: forces are
-    computed from those of a machine by its crank, which are unbounded there."""
-    row, angle, _ = pole_candidates(group, signals)
-    ends = arc_ends(group) if driven_elsewhere(group.scene) else ()
-    toggles = np.concatenate(ends, axis=1) if ends else np.empty((len(group.designs), 0))
-    design, which = np.nonzero(np.isfinite(toggles))
-    ends_arc = np.repeat([False, True], [len(row), len(design)])
-    return Singular(np.concatenate([row, design]), np.concatenate([angle, toggles[design, which]]), ends_arc)
-
-
-def driven_elsewhere(scene: Scene) -> bool:
-    """Return whether another part than the crank drives."""
-    return scene.drive != scene.mechanism.defaults.get("drive", "")
-
-
-def spoilt_peaks(
-    group: Group, places: Singular, peaks: dict[str, tuple[Array, ...]], among: Array, threads: int | None = None
-) -> Array:
-    """Return which signals have peaks that consist of rounding errors, and close to which of these places (signal,
-    place). `peaks` are the values and the angles [degree] of each signal's peaks, of which those `among` (signal,
-    design) are looked at.
-
-    Such a peak exceeds the parabola through three samples on one side, and the signal scatters there: where it rises,
-    it does so smoothly. At the end of an arc it may be infinite, too.
-    """
-    signals, (value, at) = tuple(peaks), (np.stack(numbers) for numbers in zip(*peaks.values(), strict=True))
-    row, angle, ends_arc = places
-    away = signed_distance(angle, at[:, row], group.scene.period)
-
-    def values_at(signal: Array, near: Array, beside: Array) -> Array:
-        """Return one signal's values about one place each, at angles (each, row, step) beside it [degree]."""
-        angles, values = angle[near, None, None] + beside, np.empty(beside.shape)
-        for k in np.unique(signal):
-            own = signal == k
-            rows = np.repeat(row[near[own]], math.prod(beside.shape[1:]))
-            values[own] = group.values((signals[k],), rows, angles[own].ravel(), threads).reshape(-1, *beside.shape[1:])
-        return values
-
-    close = (
-        among[:, row] & (np.abs(away) < CLEAR) & (np.isfinite(value[:, row]) | (ends_arc & (value[:, row] == np.inf)))
-    )
-    signal, near = np.nonzero(close)
-    with np.errstate(invalid="ignore"):
-        reached = _reached(values_at(signal, near, np.tile(BESIDE_CLEAR, (len(near), 1, 1))))
-        excess = value[signal, row[near]] - reached
-    high = excess > 0.0
-    signal, near, reached, excess = signal[high], near[high], reached[high], excess[high]
-    least = np.where(excess < np.inf, np.spacing(np.maximum(angle[near], 1.0)), np.inf)
-    scatters = _scatters(values_at(signal, near, _places_about(away[signal, near], least)), reached, excess)
-    spoilt = np.zeros(close.shape, dtype=bool)
-    spoilt[signal[scatters], near[scatters]] = True
-    return spoilt
-
-
-def signed_distance(poles: Array, angle: Array, period: float) -> Array:
-    """Return how far angles lie from poles, the shorter way round [degree]."""
-    distance = angle - poles
-    return distance - period * np.round(distance / period)
-
-
-def _reached(beside: Array) -> Array:
-    """Return how high a signal may reach at a pole by the parabolas through its values (each, row, step) beside it."""
-    first, second, third = np.moveaxis(beside, -1, 0)
-    bend = first - 2.0 * second + third
-    reached = np.fmax(first, first + (first - second) + bend) + np.abs(bend) + SPOILT * np.abs(first)
-    return np.fmax.reduce(reached, axis=-1)
-
-
-def _scatters(sampled: Array, reached: Array, excess: Array) -> Array:
-    """Return whether samples (each, row, step) beside peaks scatter by as much as these exceed what is reached; where
-    they are infinite, without having grown much from there before."""
-    with np.errstate(invalid="ignore"):
-        size = np.abs(sampled).max(axis=2)
-        scatter = np.abs(np.diff(sampled, n=4))[..., 0]
-        noisy = np.any(scatter > SCATTER * np.minimum(size, excess[:, None]), axis=1)
-        smooth = (scatter < SMOOTH * size)[:, : 2 * DISTANCES].reshape(len(size), 2, DISTANCES)
-        clear = np.logical_and.accumulate(smooth[..., ::-1], axis=2)[..., ::-1].reshape(len(size), 2 * DISTANCES)
-        grown = np.where(clear, size[:, : 2 * DISTANCES], 0.0).max(axis=1) > GROWN * np.abs(reached)
-    return noisy & ~(grown & (excess == np.inf))
-
-
-def _places_about(away: Array, least: Array) -> Array:
-    """Return places (each, row, step) beside singular places [degree]: on both sides at distances like those of finite
-    peaks, at any of infinite ones, and from the peaks on; each row has five close to each other."""
-    distance, finite = np.abs(away), least < np.inf
-    nearest = np.where(distance > RESOLVED, 0.25 * distance, least)
-    farthest = np.where(finite, 4.0 * np.maximum(distance, RESOLVED), CLEAR)
-    nearest, least = np.where(finite, nearest, LEAST_OF_INFINITE), np.where(finite, least, 0.0)
-    distances = np.geomspace(nearest, farthest, DISTANCES).T
-    sides = np.concatenate([distances, -distances, away[:, None], away[:, None]], axis=1)
-    forth = np.repeat([1.0, -1.0, 1.0, -1.0], [DISTANCES, DISTANCES, 1, 1])
-    return sides[..., None] + (forth * np.maximum(STEP * np.abs(sides), least[:, None]))[..., None] * np.arange(5.0)
-
-
-def clear_of(angles: Array, part: Part | None, period: float) -> Array:
-    """Return the parts (start or end, nth, design) between angles (design, nth) [degree], NaN for none, and clear of
-    them, of a part of the period or of all of it."""
-    least = np.nanmin(angles, axis=1, keepdims=True)
-    start, end = np.broadcast_arrays(*part, least)[:2] if part else (least + CLEAR, least + period - CLEAR)
-    inside = np.sort(start + np.mod(angles - start, period), axis=1)
-    inside[~(inside <= end)] = np.nan
-    first, last = np.concatenate([start, inside + CLEAR], axis=1), np.concatenate([inside - CLEAR, end], axis=1)
-    last = np.where(np.isnan(last) & np.isfinite(first), end, last)  # of the last part
-    return np.stack([first.T, last.T])
 
 
 def designs_with_candidates(scene: Scene, designs: Array, signals: tuple[str, ...]) -> Array:

@@ -1,0 +1,162 @@
+"""Find peaks that consist of rounding errors.
+
+Beside an angle at which some forces grow without bound, a force that has a limit may be the difference of two that have
+none. Where a quantity rises there, it does so smoothly; rounding errors scatter. A peak of these is searched for again,
+clear of that angle.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from linksweep.results.peak_search.arcs import arc_ends
+from linksweep.results.peak_search.groups import Group
+from linksweep.results.peak_search.paths import Part
+from linksweep.results.peak_search.singular.poles import pole_candidates
+from linksweep.scene.pairs import Array
+from linksweep.scene.scene import Scene
+
+CLEAR = 0.01
+"""Distance from a singular place [degree] within which rounding errors may be peaks."""
+ON_BOTH_SIDES = np.outer([-CLEAR, CLEAR], [1.0, 2.0, 3.0])
+"""Samples (side, step) beside a singular place [degree], whose parabolas tell how high a quantity may reach there."""
+SPOILT = 1e-9
+"""Least error, relative to a quantity, that tells a peak of rounding errors from one of the quantity."""
+RESOLVED = 5e-6
+"""Least distance from a place [degree] that the angle of a peak tells: within as much of a period it is 0."""
+DISTANCES, STEP = 33, 1e-3
+"""Samples that tell scatter from a rise: the number of distances on either side of a place, at each of which five are
+close together, and the step between these, relative to the distance."""
+SCATTER = 0.1
+"""Least fourth difference of such five that is scatter, relative to how far a peak exceeds what may be reached."""
+NEAREST, SMOOTH, GROWN = 1e-9, 0.01, 3.0
+"""Infinite peaks: the least of those distances [degree], the scatter up to which samples are smooth, relative to their
+size, and their least growth, coming closer, while they are."""
+
+
+class Singular(NamedTuple):
+    """Places beside which samples may consist of rounding errors: the row of the design in its group, the angle
+    [degree], and whether an arc ends there."""
+
+    row: Array
+    angle: Array
+    ends_arc: Array
+
+    def angles_of(self, designs: Array, chosen: Array) -> Array:
+        """Return the chosen angles of some designs (design, nth) [degree], NaN for none."""
+        place = np.flatnonzero(chosen & np.isin(self.row, designs))
+        place = place[np.argsort(self.row[place], kind="stable")]
+        own = np.searchsorted(designs, self.row[place])
+        nth = np.arange(len(own)) - np.searchsorted(own, own)
+        angles = np.full((len(designs), 1 + nth.max(initial=0)), np.nan)
+        angles[own, nth] = self.angle[place]
+        return angles
+
+
+def singular_places(group: Group, signals: tuple[str, ...]) -> Singular:
+    """Return the possible poles of these designs; and the ends of their arcs, unless the crank drives: then forces are
+    computed from those of the machine by its crank, which grow without bound there."""
+    row, angle, _ = pole_candidates(group, signals)
+    ends = arc_ends(group) if driven_elsewhere(group.scene) else ()
+    toggles = np.concatenate(ends, axis=1) if ends else np.empty((len(group.designs), 0))
+    design, which = np.nonzero(np.isfinite(toggles))
+    ends_arc = np.repeat([False, True], [len(row), len(design)])
+    return Singular(np.concatenate([row, design]), np.concatenate([angle, toggles[design, which]]), ends_arc)
+
+
+def driven_elsewhere(scene: Scene) -> bool:
+    """Return whether another part than the crank drives."""
+    return scene.drive != scene.mechanism.defaults.get("drive", "")
+
+
+def spoilt_peaks(
+    group: Group, places: Singular, peaks: dict[str, tuple[Array, ...]], among: Array, threads: int | None = None
+) -> Array:
+    """Return which signals have peaks that consist of rounding errors, and close to which of these places (signal,
+    place). `peaks` are the values and the angles [degree] of each signal's peaks, those `among` (signal, design) new.
+
+    Such a peak exceeds the parabola through three samples on one side, and the signal scatters there. At the end of an
+    arc it may be infinite, too.
+    """
+    signals, of_signals = tuple(peaks), zip(*peaks.values(), strict=True)
+    value, at = (np.stack(numbers)[:, places.row] for numbers in of_signals)
+    away = signed_distance(places.angle, at, group.scene.period)
+
+    def values_beside(signal: Array, place: Array, beside: Array) -> Array:
+        """Return one signal's values about one place each, at angles (each, distance, step) beside it [degree]."""
+        angles, values = places.angle[place, None, None] + beside, np.empty(beside.shape)
+        for k in np.unique(signal):
+            own = signal == k
+            rows = np.repeat(places.row[place[own]], math.prod(beside.shape[1:]))
+            values[own] = group.values((signals[k],), rows, angles[own].ravel(), threads).reshape(values[own].shape)
+        return values
+
+    suspect = among[:, places.row] & (np.abs(away) < CLEAR) & (np.isfinite(value) | places.ends_arc & (value == np.inf))
+    signal, place = np.nonzero(suspect)
+    with np.errstate(invalid="ignore"):
+        reached = _reached(values_beside(signal, place, np.tile(ON_BOTH_SIDES, (len(place), 1, 1))))
+        high = value[signal, place] > reached
+    signal, place, reached = signal[high], place[high], reached[high]
+    excess, distance = value[signal, place] - reached, np.abs(away[signal, place])
+    least = np.spacing(np.maximum(places.angle[place], 1.0))
+    nearest = np.where(distance > RESOLVED, 0.25 * distance, least)
+    farthest = 4.0 * np.maximum(distance, RESOLVED)
+    infinite = excess == np.inf
+    nearest[infinite], farthest[infinite] = NEAREST, CLEAR
+    beside = _five_at_each(away[signal, place], nearest, farthest, least)
+    spoilt = np.zeros(suspect.shape, dtype=bool)
+    spoilt[signal, place] = _scatters(values_beside(signal, place, beside), reached, excess)
+    return spoilt
+
+
+def signed_distance(places: Array, angle: Array, period: float) -> Array:
+    """Return how far angles lie from places, the shorter way round [degree]."""
+    distance = angle - places
+    return distance - period * np.round(distance / period)
+
+
+def _reached(beside: Array) -> Array:
+    """Return how high signals may reach at places by the parabolas through their samples (each, side, step)."""
+    first, second, third = np.moveaxis(beside, -1, 0)
+    bend = first - 2.0 * second + third
+    reached = np.fmax(first, first + (first - second) + bend) + np.abs(bend) + SPOILT * np.abs(first)
+    return np.fmax.reduce(reached, axis=-1)
+
+
+def _five_at_each(peak: Array, nearest: Array, farthest: Array, least: Array) -> Array:
+    """Return angles beside places (each, distance, step) [degree]: five close together at each distance on both sides,
+    and from the peak on, either way; no step is less than the least."""
+    distances = np.geomspace(nearest, farthest, DISTANCES).T
+    starts = np.concatenate([distances, -distances, peak[:, None], peak[:, None]], axis=1)
+    ways = np.repeat([1.0, -1.0, 1.0, -1.0], [DISTANCES, DISTANCES, 1, 1])
+    steps = ways * np.maximum(STEP * np.abs(starts), least[:, None])
+    return starts[..., None] + steps[..., None] * np.arange(5.0)
+
+
+def _scatters(sampled: Array, reached: Array, excess: Array) -> Array:
+    """Return whether fives of samples (each, distance, step) scatter by as much as peaks exceed what may be reached;
+    infinite ones, only if they have not grown from there while they were smooth."""
+    with np.errstate(invalid="ignore"):
+        size, scatter = np.abs(sampled).max(axis=2), np.abs(np.diff(sampled, n=4))[..., 0]
+        noisy = np.any(scatter > SCATTER * np.minimum(size, excess[:, None]), axis=1)
+        size, smooth = (
+            of_fives[:, : 2 * DISTANCES].reshape(-1, 2, DISTANCES) for of_fives in (size, scatter < SMOOTH * size)
+        )
+        up_to_there = np.logical_and.accumulate(smooth[..., ::-1], axis=2)[..., ::-1]
+        grown = np.where(up_to_there, size, 0.0).max(axis=(1, 2)) > GROWN * np.abs(reached)
+    return noisy & ~(grown & (excess == np.inf))
+
+
+def clear_of(angles: Array, part: Part | None, period: float) -> Array:
+    """Return the parts (start or end, nth, design) between angles (design, nth) [degree], NaN for none, and clear of
+    them, of a part of the period or of all of it."""
+    least = np.nanmin(angles, axis=1, keepdims=True)
+    start, end = np.broadcast_arrays(*part, least)[:2] if part else (least + CLEAR, least + period - CLEAR)
+    inside = np.sort(start + np.mod(angles - start, period), axis=1)
+    inside[~(inside <= end)] = np.nan
+    first, last = np.concatenate([start, inside + CLEAR], axis=1), np.concatenate([inside - CLEAR, end], axis=1)
+    last = np.where(np.isnan(last) & np.isfinite(first), end, last)  # of the last part
+    return np.stack([first.T, last.T])
