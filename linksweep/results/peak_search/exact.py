@@ -139,6 +139,8 @@ def _clear_of_rounding_errors(
             parts = clear_of(places.angles_of(designs, left_out[k]), part, group.scene.period)
             paths = tuple(partial(arcs_within, ends) for ends in zip(*parts, strict=True))
             follow(own, {signals[k]: peak}, paths, threads)
+    if left_out.any():
+        raise_to_poles(group, peaks, threads, part)
     raise_to_limits(group, peaks, places, threads, part)
 
 

@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from linksweep.results.peak_search.arcs import arc_ends
+from linksweep.results.peak_search.between import PARTLY
 from linksweep.results.peak_search.groups import Group
 from linksweep.results.peak_search.paths import Part
 from linksweep.results.peak_search.singular.poles import pole_candidates
@@ -62,7 +63,7 @@ def singular_places(group: Group, signals: tuple[str, ...]) -> Singular:
     row, angle, _ = pole_candidates(group, signals)
     ends = arc_ends(group) if driven_elsewhere(group.scene) else ()
     toggles = np.concatenate(ends, axis=1) if ends else np.empty((len(group.designs), 0))
-    design, which = np.nonzero(np.isfinite(toggles))
+    design, which = np.nonzero(np.isfinite(toggles) & (group.assembly() == PARTLY)[:, None])
     ends_arc = np.repeat([False, True], [len(row), len(design)])
     return Singular(np.concatenate([row, design]), np.concatenate([angle, toggles[design, which]]), ends_arc)
 
