@@ -367,7 +367,6 @@ FAMILIES = {
     "knuckle-joint press of any lengths": Family(_any_press, share=0.5),
     "four-bar by its rocker": Family(_by("rocker", _four_bar)),
     "inverted slider-crank by its rocker": Family(_by("rocker", _inverted_slider_crank)),
-    "press of any lengths by its upper link": Family(_by("upper", _any_press), share=0.1),
     "four-bar with a table": Family(_with_table(_four_bar, "rocker")),
     "slider-crank with friction and a table": Family(_with_table(_slider_crank(friction=True), "slider"), 90.0),
     "four-bar with a function": Family(_with_function(_four_bar, "rocker")),
