@@ -89,7 +89,7 @@ def sample_piece(front, piece, designs, lanes, of_designs, sampling, tables, row
     for k in range(constants.shape[1] if piece > 0 else 0):
         constants[row, k] = constants[row - piece, k]
     call(enter, (front, piece, *of_designs, constants[row]))
-    place_samples(constants[row], lanes, grades, x[row])
+    place_samples(constants[row], lanes, grades, 1.0, x[row])
     call(sample, (constants[row], x[row], rows[row]))
 
 

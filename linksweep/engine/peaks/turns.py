@@ -22,6 +22,8 @@ from linksweep.engine.trace.graph import Node
 
 PEAK_ANGLE = PEAK_X
 """Row of `best` that has angles from the near-toggle [degree], in place of tangents, once a search of turns is done."""
+CLOSER = 0.25
+"""Part of the width of a near-toggle by which samples are placed where they may lie too far apart."""
 BLOCKS = 32
 """Blocks of designs whose brackets are refined together."""
 NARROW = 1e-3
@@ -74,7 +76,7 @@ def search(
         for block in range(start, stop):
             own = constants[block - start]
             call(prepare, (block * lanes, designs, sizes, parameters, parameter_at, own))
-            if place_samples(own, lanes, grades, x) > 0:
+            if place_samples(own, lanes, grades, CLOSER if sparse else 1.0, x) > 0:
                 call(share, (own, x))
             call(sample, (own, x, rows))
             compare_samples(rows, SAMPLES, state, columns)
@@ -116,16 +118,16 @@ def try_vertices(constants, state, columns, lanes, number, evaluate):
     settle_peaks(state, columns)
 
 
-def place_samples(constants, lanes, grades, x):
-    """Place the samples of each half turn by the width of its near-toggle, with one more on either side; those that the
-    last block placed may be the right ones. Return the number of lanes that got others."""
+def place_samples(constants, lanes, grades, part, x):
+    """Place the samples of each half turn by a part of its near-toggle's width, with one more on either side; those of
+    the last block may be the right ones. Return the number of lanes that got others."""
     changed, half = 0, grades.shape[1] - 1
     placed = 2 * half + 2
     for far in range(2):
         middle = (far * placed + 1 + half) * lanes
         for lane in range(lanes):
-            grade, scale = 0, 1.0  # the first scale that does not exceed the width
-            while constants[far * lanes + lane] < scale and grade < GRADES - 1:
+            grade, scale = 0, 1.0  # the first scale that does not exceed it
+            while part * constants[far * lanes + lane] < scale and grade < GRADES - 1:
                 grade += 1
                 scale *= 0.5
             if x[middle + lanes + lane] != grades[grade, 1]:

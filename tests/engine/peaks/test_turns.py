@@ -143,8 +143,8 @@ def test_evaluators_have_the_same_bits_compiled_and_interpreted(one_geometry):
     assert (compiled.shared > 0) == one_geometry
     lanes, places = compiled.lanes, 2 * PLACED * compiled.lanes
     of_turn = np.zeros(places + compiled.shared)
-    assert turns.place_samples(np.repeat([0.2, 1.0], lanes), lanes, grades(), of_turn) == 2 * lanes
-    assert turns.place_samples(np.repeat([0.2, 1.0], lanes), lanes, grades(), of_turn) == 0
+    assert turns.place_samples(np.repeat([0.2, 1.0], lanes), lanes, grades(), 1.0, of_turn) == 2 * lanes
+    assert turns.place_samples(np.repeat([0.2, 1.0], lanes), lanes, grades(), 1.0, of_turn) == 0
     values = [scene.inputs.fields[node.value].values for node in evaluators.inputs]
     starts = np.cumsum([0, *(value.size for value in values[:-1])])
     parameters = np.array([scene.inputs.sizes[dim] for dim in request.loops]), np.concatenate(values, axis=None), starts
@@ -199,7 +199,7 @@ def test_designs_on_one_geometry_have_the_bits_of_those_on_equal_ones():
 
 def test_samples_are_placed_by_the_near_toggles_with_one_more_on_either_side():
     x, widths = np.empty(2 * PLACED), np.array([0.01, 1.0])
-    turns.place_samples(widths, 1, grades(), x)
+    turns.place_samples(widths, 1, grades(), 1.0, x)
     near, far = 2.0 * np.degrees(np.arctan(x.reshape(2, PLACED)))
     for angles, other in ((near, far), (far, near)):
         assert angles[1] == -90.0 and angles[1 + HALF] == 0.0 and angles[-1] == 90.0

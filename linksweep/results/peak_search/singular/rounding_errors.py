@@ -104,7 +104,7 @@ def spoilt_peaks(
     excess, distance = value[signal, place] - reached, np.abs(away[signal, place])
     least = np.spacing(np.maximum(places.angle[place], 1.0))
     nearest = np.where(distance > RESOLVED, 0.25 * distance, least)
-    farthest = 4.0 * np.maximum(distance, RESOLVED)
+    farthest = np.maximum(distance, 4.0 * RESOLVED)  # beyond a peak there may be others
     infinite = excess == np.inf
     nearest[infinite], farthest[infinite] = NEAREST, CLEAR
     beside = _five_at_each(away[signal, place], nearest, farthest, least)
