@@ -7,7 +7,8 @@ angles; of designs that move over part of a turn, the pieces of the arcs between
 jumps and the closest approaches of springs: paths about these are searched too. Other designs and scenes are searched
 along paths alone.
 
-A peak is a value of the signal at some angle, so that it exceeds the true one by no more than rounding.
+A peak is a value of the signal at some angle, so that it exceeds the true one by no more than rounding; or the limit of
+such values at a toggle, or where rounding errors exceed them.
 """
 
 from __future__ import annotations
