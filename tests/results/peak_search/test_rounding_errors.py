@@ -1,0 +1,100 @@
+"""Forces that have limits, beside angles at which others grow without bound: rounding errors are no peaks of theirs."""
+
+import math
+
+import numpy as np
+import pytest
+from oracle import FourBarData, LinkData, solve, to_scene
+
+import linksweep as ls
+from benchmarks.stress.linkages.topologies import AWAY_FROM_TOGGLES
+from benchmarks.stress.six_bars import any_linkage
+
+
+def test_forces_that_have_a_limit_at_a_change_point_are_not_rounding_errors():
+    """With ground and crank of one length, the rocker turns at half the crank's speed, and B passes through its pivot.
+
+    The moment of gravity about D, m·g·r·sin(ψ/2), is that of F43 on the arm 2·a·sin(ψ/2).
+    """
+    a, r = 0.15, 0.05
+    links = ls.Link(a, 1.0, 0.01, 0.03, 20.0), ls.Link(0.3, 1.0, 0.01, r)
+    machine = ls.InvertedSliderCrank(*links, ground=a, block_mass=2.0)
+    peaks = ls.peaks(ls.Scene(machine, 30.0, gravity=(0.0, -9.81)), of=["F43"])
+    assert float(peaks.F43_peak) == pytest.approx(9.81 * r / (2.0 * a), abs=1e-5)  # other pins bear 290 N
+
+
+def test_a_crank_that_carries_nothing_past_dead_centres_and_jams_of_the_jack():
+    """The jack moves all other links: at constant speed the crank's pin bears the crank's own inertia alone."""
+    scene = any_linkage(AWAY_FROM_TOGGLES["Whitworth, jack drives"], np.random.default_rng(5), 20)
+    crank, passing = scene.mechanism.crank, [1, 5, 11, 13]  # dead centres; jams: 5, 13
+    inertia = crank.mass * crank.cg_distance * scene.omega2**2
+    peaks = ls.peaks(scene, of=["F12"]).F12_peak
+    np.testing.assert_allclose(peaks[passing], inertia[passing], rtol=1e-9)
+
+
+def test_a_torque_with_summits_close_to_a_change_point():
+    """Almost a parallelogram, its crank and ground in one line: within 0.01° of a change point that cannot be told from
+    a toggle, the torque rises to 1e12 N·m, and falls, against 60-digit arithmetic."""
+    lengths = 0.5, 0.5 + 5e-5 + 4e-7, 0.5 + 4e-7 + 1e-11
+    data = FourBarData(*(LinkData(length, 1.0, 0.01, 0.3 * length, 20.0) for length in lengths), 0.5 + 5e-5, omega2=4.0)
+    peaks = ls.peaks(to_scene(data), of=["T12"])
+    at, torque = float(peaks.T12_max_at), float(peaks.T12_max)
+    before, there, after = (float(solve(data, at + step)["T12"]) for step in (-1e-4, 0.0, 1e-4))
+    assert torque == pytest.approx(there, rel=1e-12) and torque > 1e12 and max(before, after) < torque
+    assert float(peaks.T12_min) < float(solve(data, -1e-5)["T12"]) < -1e14
+
+
+@pytest.mark.parametrize(
+    ("direction", "friction"), [(-60.0, 0.1), (120.0, 0.1), (-150.0, 0.1), (-90.0, 0.1), (0.0, 0.2)]
+)
+def test_crank_and_rod_of_a_press_by_its_upper_link(direction, friction):
+    """Without a torque at the crank, crank and rod bear what they bear in the four-bar of the press, which has no ram;
+    the ram's friction jams the press at both ends of its arc, and its own forces grow without bound there."""
+    crank, rod, upper = ls.Link(0.9, 0.65, 0.1, 0.2), ls.Link(2.1, 0.93, 0.74, 2.0), ls.Link(2.4, 1.5, 1.0, 1.0)
+    press = ls.Linkage(
+        "crank A-B, rod B-C, upper D-C, lower C-E, ram E on slide",
+        ground={"A": (0.0, 0.0), "D": (0.43, 0.0)},
+        guides={"slide": ls.Guide((0.43, 0.0), direction, friction)},
+        branch={"C": "open", "E": "crossed"},
+        crank=crank,
+        rod=rod,
+        upper=upper,
+        lower=ls.Link(1.3, 1.0, 0.2, 0.6),
+        ram=ls.Slider(0.6),
+    )
+    scene = ls.Scene(press, 11.6, gravity=(0.0, -9.81), drive="upper")
+    four_bar = ls.Scene(ls.FourBar(crank, rod, upper, ground=0.43), 11.6, gravity=(0.0, -9.81), drive="rocker")
+    compare_with_four_bar(scene, four_bar, ["F12", "F32"])
+
+
+@pytest.mark.parametrize("drive", ["output", "rocker"])
+def test_crank_and_coupler_of_a_six_bar_by_its_output(drive):
+    """Likewise where a second dyad on the rocker ends the arcs: the drive's torque and the other forces are unbounded
+    there."""
+    crank, coupler = ls.Link(2.49, 1.41, 0.903, 0.825), ls.Link(2.38, 1.46, 1.15, 0.845, 105.0)
+    rocker = ls.Link(2.7, 1.5, 0.293, 2.39, 60.9)
+    six_bar = ls.Linkage(
+        "crank A-B, coupler B-C, rocker D-C-E, rod E-F, output G-F",
+        ground={"A": (0.0, 0.0), "D": (0.45, 0.0), "G": (-1.36, 0.866)},
+        points={"E": (0.97, -92.0)},
+        branch={"C": "open", "F": "crossed"},
+        crank=crank,
+        coupler=coupler,
+        rocker=rocker,
+        rod=ls.Link(0.573, 1.43, 0.073, 0.624, -154.0),
+        output=ls.Link(0.65, 0.283, 0.0092, 0.34),
+    )
+    four_bar = ls.Scene(ls.FourBar(crank, coupler, rocker, 0.45), 12.3, -70.9, drive="rocker")
+    scene = ls.Scene(six_bar, 12.3, -70.9, drive=drive)
+    assert float(ls.peaks(scene, of=["F65"]).F65_peak) == math.inf
+    compare_with_four_bar(scene, four_bar, ["F12", "F32", "F43"])
+
+
+def compare_with_four_bar(scene, four_bar, forces):
+    """Peaks are the four-bar's forces at their angles, and no lower than its samples where the machine moves."""
+    peaks, moves = ls.peaks(scene, of=forces), ls.sweep(scene, 5760, of=["status"]).status == 0
+    samples = ls.sweep(four_bar, 5760, of=forces).where(moves).max()
+    for force in forces:
+        peak, at = float(peaks[f"{force}_peak"]), [float(peaks[f"{force}_peak_at"])]
+        assert peak == pytest.approx(float(ls.sweep(four_bar, at, of=[force])[force][0]), rel=1e-8)
+        assert peak > float(samples[force]) * (1.0 - 1e-9)
