@@ -288,8 +288,12 @@ def _inverted_slider_crank(random: Random, n: int) -> ls.Scene:
 
 
 def _by(drive: str, machines: Callable[[Random, int], ls.Scene]) -> Callable[[Random, int], ls.Scene]:
-    """Return machines that another link drives; most come to dead centres, where forces are unbounded."""
-    return lambda random, n: replace(machines(random, n), drive=drive)
+    def scene(random: Random, n: int) -> ls.Scene:
+        """Return machines that this link drives; those whose rocker swings have dead centres, where forces are
+        unbounded."""
+        return replace(machines(random, n), drive=drive)
+
+    return scene
 
 
 def _with_table(machines: Callable[[Random, int], ls.Scene], link: str) -> Callable[[Random, int], ls.Scene]:

@@ -27,8 +27,8 @@ of a path. The first is a quarter of that to the next toggle: others may hide be
 ALLOWED = 1e-10
 """Error of a limit, relative to it, from which on samples are taken closer to the toggle."""
 STEP_AT_POLE, OF_ROUNDING, KNOWN = 0.1, 32.0, 1e-3
-"""Limits beside possible poles: the step [degree] that `SPANS` multiply, the error over the last terms of a polynomial
-through values with rounding errors, and its largest part of a limit to which a peak is raised."""
+"""Limits at singular places: the step [degree] that `SPANS` multiply; the error, relative to the last terms of a
+polynomial, as its values have rounding errors; and the largest, relative to a limit, with which a peak is raised."""
 ANGLES = (np.arange(NODES) + 0.5) * (np.pi / NODES)
 TERMS = np.cos(np.outer(ANGLES, np.arange(NODES))) * np.append(1.0, np.full(NODES - 1, 2.0)) / NODES
 """Chebyshev's angles of samples, and the terms of the polynomial through values there, at the angle 0."""
@@ -114,9 +114,8 @@ def follow(group: Any, peaks: dict[str, SignalPeak], all_paths: tuple[PathsOf, .
 def raise_to_poles(group: Any, peaks: dict[str, SignalPeak], threads: int | None, part: Part | None = None) -> None:
     """Make the peaks infinite at the poles of their signals, those inside a part of the period if there is one."""
     row, angle, infinite = poles(group, tuple(peaks), threads)
-    if part is not None:
-        inside = in_period(angle - part[0], group.scene.period) <= part[1] - part[0]
-        row, angle, infinite = row[inside], angle[inside], infinite[inside]
+    inside = _inside(angle, part, group.scene.period)
+    row, angle, infinite = row[inside], angle[inside], infinite[inside]
     places, angle = group.some(row).places, angle_in_period(angle, group.scene.period)
     for k, peak in enumerate(peaks.values()):
         at = flat_index(peak.value, places, len(row))[infinite[:, k]]
@@ -129,9 +128,7 @@ def raise_to_limits(
 ) -> None:
     """Raise finite peaks beside singular places to the limits of their signals there, or their bounds, where these are
     not known as well: samples closer by may consist of rounding errors. `part`: as of `raise_to_poles`."""
-    if part is not None:
-        inside = in_period(places.angle - part[0], group.scene.period) <= part[1] - part[0]
-        places = Singular(*(numbers[inside] for numbers in places))
+    places = Singular(*(numbers[_inside(places.angle, part, group.scene.period)] for numbers in places))
     signals, side = tuple(peaks), np.repeat([-1.0, 1.0], len(places.row))
     row, angle = np.tile(places.row, 2), np.tile(places.angle, 2)
     known = zip(*(numbers_of(peak, group)[:2] for peak in peaks.values()), strict=True)
@@ -143,7 +140,7 @@ def raise_to_limits(
         names = tuple(signals[k] for k in which)
         return group.values(names, rows, angles.ravel(), threads).reshape(-1, *x.shape)
 
-    limit, error, samples = limits_at_toggles(values_at, np.full(len(row), STEP_AT_POLE), needs)
+    limit, error, samples = limits_by_polynomials(values_at, np.full(len(row), STEP_AT_POLE), needs)
     beyond = OF_ROUNDING * error
     higher = (beyond <= KNOWN * np.abs(limit)) & (limit - beyond > value)
     with np.errstate(invalid="ignore"):  # of limits that are not known
@@ -152,6 +149,11 @@ def raise_to_limits(
     for k, peak in enumerate(peaks.values()):
         ends = np.flatnonzero(needs[k] & (error[k] < np.inf))
         raise_to(peak, group.some(row[ends]), tuple(table[k, ends] for table in (height, at, bound, samples)))
+
+
+def _inside(angle: Array, part: Part | None, period: float) -> Array:
+    """Return whether angles [degree] lie inside a part of the period; all do if there is none."""
+    return np.full(len(angle), True) if part is None else in_period(angle - part[0], period) <= part[1] - part[0]
 
 
 def _raise(peak: SignalPeak, at: Array, best: Array, best_angle: Array, best_bound: Array, taken: Array) -> None:
@@ -294,16 +296,17 @@ def _limits(
         # ten times closer in x: a signal that varies as 1/x is ten times as large, a signal with a limit hardly changes
         infinite = (np.abs(closer) > 5.0 * np.abs(probe)) & (np.abs(closer) > 0.1 * np.nan_to_num(np.abs(peak)))
         highest = closer + np.abs(closer - probe)
-        limit, error, samples = limits_at_toggles(values_at, step, ~infinite & (highest >= peak))
+        limit, error, samples = limits_by_polynomials(values_at, step, ~infinite & (highest >= peak))
         limit = np.where(infinite, np.copysign(np.inf, closer), np.minimum(limit, highest))
     return limit, error, samples + probes.shape[1]
 
 
-def limits_at_toggles(
+def limits_by_polynomials(
     values_at: Callable[[Array, Array, Array], Array], steps: Array, needs: Array
 ) -> tuple[Array, Array, Array]:
-    """Return the limits of signals at one end of arcs where they are needed (signal, arc), −inf elsewhere, their
-    errors, and counts of samples: the limits of polynomials through samples before the end, with their last terms.
+    """Return the limits of signals at one end of arcs, or one side of singular places, where they are needed (signal,
+    arc), −inf elsewhere, their errors, and counts of samples: the limits of polynomials through samples before the end,
+    with their last terms.
 
     `values_at` returns values (signal, arc, place) of signals and arcs, by their numbers, at distances x (arc, place).
     """

@@ -53,13 +53,13 @@ from linksweep.results.peak_search.pieces import (
     known_on_pieces,
     rubbing_signals,
 )
-from linksweep.results.peak_search.singular.poles import designs_with_candidates, designs_without_jams, may_have_poles
-from linksweep.results.peak_search.singular.rounding_errors import (
-    clear_of,
+from linksweep.results.peak_search.singular.poles import (
+    designs_with_candidates,
+    designs_without_jams,
     driven_elsewhere,
-    singular_places,
-    spoilt_peaks,
+    may_have_poles,
 )
+from linksweep.results.peak_search.singular.rounding_errors import clear_of, singular_places, spoilt_peaks
 from linksweep.scene.dimensions import aligned
 from linksweep.scene.grid import NAMES as GRID_ROWS
 from linksweep.scene.pairs import Array, changes, in_period

@@ -13,7 +13,7 @@ import numpy as np
 
 from linksweep.engine.peaks.samples import HALF
 from linksweep.engine.quantity import LAST_UNJAMMED
-from linksweep.results.peak_search.along_paths import SignalPeak, angle_in_period, limits_at_toggles, raise_to
+from linksweep.results.peak_search.along_paths import SignalPeak, angle_in_period, limits_by_polynomials, raise_to
 from linksweep.results.peak_search.arcs import NEAREST, arc_ends, steps_at_ends
 from linksweep.results.peak_search.groups import Group, groups
 from linksweep.results.peak_search.paths import distinct
@@ -30,7 +30,7 @@ from linksweep.results.peak_search.pieces import (
     known_on_pieces,
     values_at,
 )
-from linksweep.results.peak_search.singular.poles import designs_without_jams
+from linksweep.results.peak_search.singular.poles import designs_without_jams, driven_elsewhere
 from linksweep.scene.pairs import Array, in_order, some_of
 from linksweep.scene.scene import Scene
 
@@ -119,7 +119,7 @@ def follow_arcs(scene: Scene, designs: Array, peaks: dict[str, SignalPeak], thre
 def _jams_end_arcs(scene: Scene) -> bool:
     """Return whether arcs are cut where friction wedges: where the crank drives, it jams all between two cuts, or
     nothing."""
-    return scene.table.limits is not None and scene.drive == scene.mechanism.defaults["drive"]
+    return scene.table.limits is not None and not driven_elsewhere(scene)
 
 
 def _highest_of_designs(row: Array, best: Best, designs: int) -> Best:
@@ -218,14 +218,14 @@ def _inside(away: Array, least: Array | float, length: Array) -> Array:
 def _limits(
     group: Group, arcs: Arcs, end: int, signals: tuple[str, ...], needs: Array, threads: int | None
 ) -> tuple[Array, Array, Array]:
-    """Return `limits_at_toggles` at one end of each arc."""
+    """Return `limits_by_polynomials` at one end of each arc."""
 
     def at_distances(which: Array, rows: Array, x: Array) -> Array:
         angles = some_of(arcs, rows).beside(np.array([end]), x)
         return values_at(group.some(rows), tuple(signals[k] for k in which), angles, threads)
 
     steps = _steps(group, arcs)[:, end] if needs.any() else np.zeros(len(arcs.row))
-    return limits_at_toggles(at_distances, steps, needs)
+    return limits_by_polynomials(at_distances, steps, needs)
 
 
 def _steps(group: Group, arcs: Arcs) -> Array:

@@ -8,7 +8,7 @@ does that.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Iterator
 from functools import singledispatch
 from itertools import chain
 from typing import Any
@@ -48,6 +48,11 @@ OF_OUTPUT = ("torque_ratio", "mechanical_advantage")
 
 Candidates = tuple[Array, Array, Array]
 """Possible poles: the row of its design in a group, the angle, and the distance of the closest sample [degree]."""
+
+
+def driven_elsewhere(scene: Scene) -> bool:
+    """Return whether another part than the crank drives."""
+    return scene.drive != scene.mechanism.defaults.get("drive", "")
 
 
 def may_have_poles(scene: Scene, signals: tuple[str, ...]) -> bool:
@@ -114,7 +119,7 @@ def designs_with_candidates(scene: Scene, designs: Array, signals: tuple[str, ..
 @singledispatch
 def pole_candidates(group: Any, signals: tuple[str, ...]) -> Candidates:
     """Return the possible poles of these signals."""
-    return concatenated([_singular(group, signals), _change_points(group)])
+    return concatenated([_dead_centres_and_jams(group, signals), _change_points(group)])
 
 
 def concatenated(parts: list[Candidates]) -> Candidates:
@@ -131,18 +136,18 @@ def _grows_as_a_power(size: Array) -> Array:
     return (least > LEAST_GROWTH) & (largest < EVENNESS * least)
 
 
-def _singular_angles(findings: dict[str, Finding], kinds: Collection[str] = KINDS) -> list[Array]:
+def _singular_angles(findings: dict[str, Finding]) -> list[Array]:
     """Return the dead centres and jams among findings in closed form [degree], several on a trailing axis."""
-    return [findings[f"{KINDS[kind]}_angle"].values for kind in kinds if f"{KINDS[kind]}_angle" in findings]
+    return [findings[f"{KINDS[kind]}_angle"].values for kind in KINDS if f"{KINDS[kind]}_angle" in findings]
 
 
-def singular_angles(group: Group, signals: tuple[str, ...] = (), kinds: Collection[str] = KINDS) -> Array:
+def singular_angles(group: Group, signals: tuple[str, ...] = ()) -> Array:
     """Return the dead centres and jams (design, nth) of designs, those of the output if it is among the signals."""
     scene = group.scene
     checks = scene.mechanism.driven_findings(scene.motion | {"drive": scene.drive})
     checks += scene.mechanism.output_findings() if _of_output(signals) else ()
-    angles = [_singular_angles(findings(*map(group.number, numbers)), kinds) for findings, numbers in checks]
-    return np.concatenate([*map(group.zeros, kinds), *chain(*angles)], axis=1)
+    angles = [_singular_angles(findings(*map(group.number, numbers))) for findings, numbers in checks]
+    return np.concatenate([*map(group.zeros, KINDS), *chain(*angles)], axis=1)
 
 
 def designs_without_jams(scene: Scene, designs: Array) -> Array:
@@ -150,9 +155,8 @@ def designs_without_jams(scene: Scene, designs: Array) -> Array:
     return designs[~np.isfinite(singular_angles(all_at_once(scene, designs))).any(axis=1)]
 
 
-def _singular(group: Group, signals: tuple[str, ...], kinds: Collection[str] = KINDS) -> Candidates:
-    """Return the dead centres and jams of these designs, or those of one kind."""
-    angle = singular_angles(group, signals, kinds)
+def _dead_centres_and_jams(group: Group, signals: tuple[str, ...]) -> Candidates:
+    angle = singular_angles(group, signals)
     row, which = np.nonzero(np.isfinite(angle))
     return row, angle[row, which], np.full(len(row), CLOSEST)
 

@@ -16,9 +16,8 @@ from linksweep.results.peak_search.arcs import arc_ends
 from linksweep.results.peak_search.between import PARTLY
 from linksweep.results.peak_search.groups import Group
 from linksweep.results.peak_search.paths import Part
-from linksweep.results.peak_search.singular.poles import pole_candidates
+from linksweep.results.peak_search.singular.poles import driven_elsewhere, pole_candidates
 from linksweep.scene.pairs import Array
-from linksweep.scene.scene import Scene
 
 CLEAR = 0.01
 """Distance from a singular place [degree] within which rounding errors may be peaks."""
@@ -62,15 +61,12 @@ def singular_places(group: Group, signals: tuple[str, ...]) -> Singular:
     computed from those of the machine by its crank, which grow without bound there."""
     row, angle, _ = pole_candidates(group, signals)
     ends = arc_ends(group) if driven_elsewhere(group.scene) else ()
-    toggles = np.concatenate(ends, axis=1) if ends else np.empty((len(group.designs), 0))
+    if not ends:
+        return Singular(row, angle, np.zeros(len(row), dtype=bool))
+    toggles = np.concatenate(ends, axis=1)
     design, which = np.nonzero(np.isfinite(toggles) & (group.assembly() == PARTLY)[:, None])
     ends_arc = np.repeat([False, True], [len(row), len(design)])
     return Singular(np.concatenate([row, design]), np.concatenate([angle, toggles[design, which]]), ends_arc)
-
-
-def driven_elsewhere(scene: Scene) -> bool:
-    """Return whether another part than the crank drives."""
-    return scene.drive != scene.mechanism.defaults.get("drive", "")
 
 
 def spoilt_peaks(

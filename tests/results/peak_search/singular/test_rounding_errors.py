@@ -9,6 +9,16 @@ from oracle import FourBarData, LinkData, solve, to_scene
 import linksweep as ls
 from benchmarks.stress.linkages.topologies import AWAY_FROM_TOGGLES
 from benchmarks.stress.six_bars import any_linkage
+from linksweep.results.peak_search.singular.rounding_errors import clear_of
+
+SINGULAR = np.array([[100.0, 40.0], [350.0, math.nan]])
+"""Angles of singular places, of two designs."""
+PARTS = {
+    None: [[(40.01, 99.99), (100.01, 399.99)], [(350.01, 709.99)]],
+    (0.0, 90.0): [[(0.0, 39.99), (40.01, 90.0)], [(0.0, 90.0)]],
+    (340.0, 405.0): [[(340.0, 399.99), (400.01, 405.0)], [(340.0, 349.99), (350.01, 405.0)]],
+}
+"""Parts between them of a turn, or of a part of it."""
 
 
 def test_forces_that_have_a_limit_at_a_change_point_are_not_rounding_errors():
@@ -98,3 +108,11 @@ def compare_with_four_bar(scene, four_bar, forces):
         peak, at = float(peaks[f"{force}_peak"]), [float(peaks[f"{force}_peak_at"])]
         assert peak == pytest.approx(float(ls.sweep(four_bar, at, of=[force])[force][0]), rel=1e-8)
         assert peak > float(samples[force]) * (1.0 - 1e-9)
+
+
+@pytest.mark.parametrize("part", PARTS)
+def test_parts_clear_of_singular_places(part):
+    starts, ends = clear_of(SINGULAR, part, 360.0)
+    for k, expected in enumerate(PARTS[part]):
+        parts = [(start, end) for start, end in zip(starts[:, k], ends[:, k], strict=True) if start < end]
+        np.testing.assert_allclose(parts, expected, rtol=1e-12)
