@@ -18,7 +18,7 @@ import numpy as np
 
 from benchmarks.rivals.peers import Array, Design, grid
 from linksweep.engine.blocks import block
-from linksweep.engine.run import over_threads
+from linksweep.engine.threads import over_threads
 
 # sqrt is vectorised only with -fno-math-errno; -fno-trapping-math makes the comparisons of peaks cheaper.
 # Neither changes a value. -ffast-math would (it reorders sums): left out. a * b + c is contracted by default.
@@ -79,7 +79,7 @@ def bind_peaks(
         arrays = (array[first:last] for array in (packed, values, at))
         _bind(lib.peaks, [last - first, n_angles], [*tables, *arrays])()
 
-    return partial(over_threads, some, len(packed), threads, threads), (values, at)
+    return partial(over_threads, some, len(packed), threads), (values, at)
 
 
 def bind_move(lib: ctypes.CDLL, n_angles: int, threads: int) -> Callable[[], object]:
@@ -91,7 +91,7 @@ def bind_move(lib: ctypes.CDLL, n_angles: int, threads: int) -> Callable[[], obj
     def move(first: int, last: int) -> None:
         _bind(lib.move, [8 * first, 8 * last, n], [*arrays])()
 
-    return partial(over_threads, move, n // 8, threads, threads)
+    return partial(over_threads, move, n // 8, threads)
 
 
 def store(lib: ctypes.CDLL, design: Design, theta2: Array) -> Array:

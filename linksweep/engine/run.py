@@ -7,12 +7,10 @@ plan are interpreted, and the kernel is compiled once the interpreted work has a
 from __future__ import annotations
 
 import math
-import os
-from collections.abc import Callable, Iterable, Mapping
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
-from itertools import accumulate, pairwise
+from itertools import accumulate
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -27,6 +25,7 @@ from linksweep.engine.kernel.side_by_side import SideBySideWriter, fits_side_by_
 from linksweep.engine.kernel.vectors import LANES, width_in_stages
 from linksweep.engine.kernel.writer import Reduction, Writer
 from linksweep.engine.patience import Patience
+from linksweep.engine.threads import over_threads
 from linksweep.engine.trace.graph import Node
 from linksweep.engine.trace.plan import Plan
 
@@ -162,13 +161,13 @@ runner = lru_cache(maxsize=256)(Runner)
 """Return the `Runner` of these arguments, one for all requests."""
 
 
-def evaluate(plan: Plan, inputs: Fields, grid: Grid, sizes: Sizes, threads: int | None = None) -> dict[str, Field]:
+def evaluate(plan: Plan, inputs: Fields, grid: Grid, sizes: Sizes) -> dict[str, Field]:
     """Return every output of the plan over its own dims."""
     ready = runner(plan, ())
     if ready.should_interpret(_samples(plan, grid, sizes), COMPILE_AFTER):
         return _interpreted(plan, inputs, grid, sizes)
     layout = ready.layout(sizes)
-    block, single = _execute(ready, inputs, grid, sizes, threads)
+    block, single = _execute(ready, inputs, grid, sizes)
     stored = {slot.node: _rows_of(slot, block, grid) for slot in layout.rows}
     stored |= {slot.node: single_of(slot, single) for slot in layout.singles}
     stored |= {node: Field((), np.asarray(node.value)) for node in ready.plan.constants}
@@ -176,7 +175,7 @@ def evaluate(plan: Plan, inputs: Fields, grid: Grid, sizes: Sizes, threads: int 
 
 
 def reduce_rows(
-    plan: Plan, reductions: tuple[Reduction, ...], inputs: Fields, grid: Grid, sizes: Sizes, threads: int | None = None
+    plan: Plan, reductions: tuple[Reduction, ...], inputs: Fields, grid: Grid, sizes: Sizes
 ) -> dict[Reduction, tuple[Field, Field]]:
     """Return two numbers for each reduction (value and angle, or value and count), over the signal's dims but the
     index."""
@@ -185,7 +184,7 @@ def reduce_rows(
         fields = _interpreted(plan, inputs, grid, sizes)
         return {r: _reduced_in_python(r, fields[r.name], grid) for r in reductions}
     layout = ready.layout(sizes)
-    _, single = _execute(ready, inputs, grid, sizes, threads)
+    _, single = _execute(ready, inputs, grid, sizes)
     pairs = zip(reductions, layout.singles[::2], layout.singles[1::2], strict=True)
     return {r: (single_of(value, single), single_of(at, single)) for r, value, at in pairs}
 
@@ -231,9 +230,7 @@ def _reduced_in_python(reduction: Reduction, field: Field, grid: Grid) -> tuple[
 # --------------------------------------------------------------------------------------------- compiled
 
 
-def _execute(
-    ready: Runner, inputs: Fields, grid: Grid, sizes: Sizes, threads: int | None
-) -> tuple[np.ndarray, np.ndarray]:
+def _execute(ready: Runner, inputs: Fields, grid: Grid, sizes: Sizes) -> tuple[np.ndarray, np.ndarray]:
     """Flatten the inputs, run the kernel over all designs by a pool of threads, and return block and single."""
     plan, layout = ready.plan, ready.layout(sizes)
     profiles, profile_at = _profiles(plan, ready.fused.profiles, inputs, grid)
@@ -265,48 +262,8 @@ def _execute(
         )  # fmt: skip
 
     workers = 1 + _samples(plan, grid, sizes) // SAMPLES_PER_THREAD
-    over_threads(work, -(-length // unit), 1 if ready.reductions and not plan.loops else workers, threads)
+    over_threads(work, -(-length // unit), 1 if ready.reductions and not plan.loops else workers)
     return block[:, : len(grid.angles)], single
-
-
-def over_threads(work: Callable[[int, int], None], length: int, workers: int, threads: int | None = None) -> None:
-    """Run work(first, last) over 0 … length by at most `workers` threads, this one among them, as cores and `threads`
-    allow."""
-    workers = min(workers, length)
-    workers = min(workers, threads or os.cpu_count() or 1) if workers > 1 else workers
-    if workers <= 1:
-        work(0, length)
-        return
-    parts = iter(shares(length, workers))
-
-    def work_on_parts() -> None:
-        for first, last in parts:  # each is taken by one thread
-            work(first, last)
-
-    others = [_pool(os.getpid()).submit(work_on_parts) for _ in range(workers - 1)]
-    try:
-        work_on_parts()  # this thread works, too: a second one may wait for its core
-    finally:
-        for other in others:
-            if not other.cancel():  # it has begun
-                other.result()
-
-
-def shares(length: int, workers: int) -> list[tuple[int, int]]:
-    """Return parts of 0 … length for workers to take in turn, ever smaller ones: so they end at nearly the same time,
-    though one of them is held up."""
-    bounds, least = [0], -(-length // (16 * workers))
-    while bounds[-1] < length:
-        part = max((length - bounds[-1]) // (2 * workers), least)
-        bounds.append(min(bounds[-1] + part, length))
-    return [*pairwise(bounds)]
-
-
-@lru_cache(maxsize=1)
-def _pool(_process: int) -> ThreadPoolExecutor:
-    """Return the threads that work beside those which call, started once: that took as long as 50 000 samples. A forked
-    process has none of those of the first."""
-    return ThreadPoolExecutor(os.cpu_count(), thread_name_prefix="linksweep")
 
 
 def _samples(plan: Plan, grid: Grid, sizes: Sizes) -> int:

@@ -33,15 +33,15 @@ MAIN = ("main_position", "F_peak", "F_peak_at", "equivalent_load")
 SIGNALS = [name for name in SHAKING if name not in ("Fsx", "Fsy")]
 
 
-def parts_of(machine: MultiCylinder, threads: int | None) -> dict[str, Any]:
+def parts_of(machine: MultiCylinder) -> dict[str, Any]:
     """Return the parts of the page of an engine of one design."""
     engine = machine.engine
     if design_labels(engine):
         refuse(["engine: has several designs, and a report shows one; give one"])
     refuse(turning_problems(engine))
-    worst = peaks(machine, of=[*SIGNALS, *(f"{name}_bound" for name in SIGNALS), *PINS], threads=threads)
+    worst = peaks(machine, of=[*SIGNALS, *(f"{name}_bound" for name in SIGNALS), *PINS])
     refuse([] if int(worst["status"]) == 0 else ["engine: must run all the way round; ls.check tells where it ends"])
-    mains = bearings(machine, threads=threads) if machine.mains else None
+    mains = bearings(machine) if machine.mains else None
     cylinders = section("Cylinders", _cylinders(machine, worst))
     return {
         "kind": f"{len(machine.crank_angles)} cylinders",
@@ -50,12 +50,12 @@ def parts_of(machine: MultiCylinder, threads: int | None) -> dict[str, Any]:
         "left": joined(cylinders, section("Peaks of all together", _peaks(machine, worst))),
         "right": joined(
             section("Motion", scene_tables.settings(engine)),
-            section("Drive", _drive(machine, threads)),
+            section("Drive", _drive(machine)),
             section("Main bearings", _mains(mains, _system(machine)), tag("p", HINGED, class_="note"))
             if mains is not None
             else Markup(),
         ),
-        "figures": pictures(_figures(machine, mains, threads)),
+        "figures": pictures(_figures(machine, mains)),
         "more": "",
         "signs": SIGNS,
         "explore": "",
@@ -89,9 +89,9 @@ def _peaks(machine: MultiCylinder, worst: xr.Dataset) -> Markup:
     return table(("", "", "peak", "at θ₂", "bound"), rows, class_="peaks")
 
 
-def _drive(machine: MultiCylinder, threads: int | None) -> Markup:
-    work = duty(machine, threads=threads)
-    wheels = flywheel(machine, fluctuation=fluctuations(), threads=threads)
+def _drive(machine: MultiCylinder) -> Markup:
+    work = duty(machine)
+    wheels = flywheel(machine, fluctuation=fluctuations())
     system = _system(machine)
     torque = "mean torque", measure(float(work["effort_mean"]), "N m", system)
     rows = [torque, *page_tables.works(work, system), *page_tables.flywheels(wheels, system)]
@@ -112,8 +112,8 @@ def _mains(loads: xr.Dataset, system: UnitSystem) -> Markup:
     return table(header, rows, class_="numbers")
 
 
-def _figures(machine: MultiCylinder, mains: xr.Dataset | None, threads: int | None) -> Iterator[Picture]:
-    cycle, system = machine.sweep(threads=threads), _system(machine)
+def _figures(machine: MultiCylinder, mains: xr.Dataset | None) -> Iterator[Picture]:
+    cycle, system = machine.sweep(), _system(machine)
     torque = in_shown_units(cycle[["T12"]], system)["T12"]
     yield Picture("Torque of all cylinders", SIZE, partial(_over_angle, [torque], f"torque [{system.unit('N m')}]"))
     if mains is not None:

@@ -69,7 +69,7 @@ def _of_cycle(results: Results, drawing: Drawing) -> Iterator[Picture]:
     yield Picture(kind, SIZE, partial(plot.torque, ds))
     if not bounded:  # there, it is the nearness of the toggle that loads the pin
         return
-    shares = breakdown(results.scene, force, theta2=ds[signals.INDEX].values[::STEPS], threads=results.threads)
+    shares = breakdown(results.scene, force, theta2=ds[signals.INDEX].values[::STEPS])
     title = f"Where the load of {drawing.joint_text(force)} comes from: {symbol(force)}"
     yield Picture(title, SIZE, lambda ax: _legend_below(plot.breakdown(shares, force, ax=ax)))
 

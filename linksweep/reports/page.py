@@ -18,6 +18,7 @@ import xarray as xr
 
 from linksweep.analysis.strength.material import Material
 from linksweep.base.validate import refuse
+from linksweep.engine.threads import limits_threads
 from linksweep.files.atomic import ending_of
 from linksweep.files.netcdf import write_text
 from linksweep.reports import checks as page_checks
@@ -45,6 +46,7 @@ EXPLORE = tag(
 SIGNS = "Fᵢⱼ is the force of link i on link j; angles and torques count counter-clockwise, from x."
 
 
+@limits_threads
 def report(
     scene: Scene | xr.Dataset | MultiCylinder,
     path: str | os.PathLike[str],
@@ -103,25 +105,19 @@ def report(
     if isinstance(scene, MultiCylinder):
         refuse([] if theta2 is None else [f"theta2 = {theta2}: must be left out for several cylinders"])
         refuse([] if material is None else ["material: must be left out for several cylinders"])
-        write_text(page_of_cylinders(scene.in_memory, title, threads), path)
+        write_text(page_of_cylinders(scene.in_memory, title), path)
         return
     one = scene if isinstance(scene, Scene) else scene_at(scene)
     refuse(_design_problems(one))
     part = part_of("theta2", theta2, one)
     refuse(["material: strength is of the whole cycle; leave out theta2"] if material and part else [])
-    text = page(one, title, part, threads, material)
+    text = page(one, title, part, material)
     write_text(text.encode(errors="replace").decode(), path)  # a title may have bytes that are no letters
 
 
-def page(
-    scene: Scene,
-    title: str | None = None,
-    part: Range | None = None,
-    threads: int | None = None,
-    material: Steel | None = None,
-) -> str:
+def page(scene: Scene, title: str | None = None, part: Range | None = None, material: Steel | None = None) -> str:
     """Return the report as HTML."""
-    results = results_of(scene, part, threads, material)
+    results = results_of(scene, part, material)
     kind = scene_tables.kind_of(scene)
     between = f" from {degrees(part[0])} to {degrees(part[1])}" if part else ""
     parts = {
@@ -144,9 +140,9 @@ def page(
     return _filled(parts)
 
 
-def page_of_cylinders(machine: MultiCylinder, title: str | None, threads: int | None) -> str:
+def page_of_cylinders(machine: MultiCylinder, title: str | None) -> str:
     """Return the report of an engine of several cylinders as HTML."""
-    parts = parts_of(machine, threads)
+    parts = parts_of(machine)
     return _filled({**parts, "title": title or "Engine", "version": version("linksweep")})
 
 

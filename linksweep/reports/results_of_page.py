@@ -40,7 +40,6 @@ class Results(NamedTuple):
 
     scene: Scene
     part: Range | None
-    threads: int | None
     cycle: xr.Dataset
     peaks: xr.Dataset
     check: xr.Dataset
@@ -91,25 +90,23 @@ class Results(NamedTuple):
         return self.part is None or (angle - self.part[0]) % self.scene.period_of_motion <= self.part[1] - self.part[0]
 
 
-def results_of(
-    scene: Scene, part: Range | None = None, threads: int | None = None, material: Steel | None = None
-) -> Results:
+def results_of(scene: Scene, part: Range | None = None, material: Steel | None = None) -> Results:
     """Compute all results that the report shows of a scene of one design; of strength where a material is stated."""
     theta2: Any = STEPS * int(scene.period)
     if part is not None:
         theta2 = np.linspace(*part, round((part[1] - part[0]) * STEPS) + 1)
-    cycle = sweep(scene, theta2, of=_outputs(scene), threads=threads)
-    worst = _exact(scene, threads) if part is None else peaks(scene, _peaks_of(scene), between=part, threads=threads)
-    results = Results(scene, part, threads, cycle, worst, check(scene))
+    cycle = sweep(scene, theta2, of=_outputs(scene))
+    worst = _exact(scene) if part is None else peaks(scene, _peaks_of(scene), between=part)
+    results = Results(scene, part, cycle, worst, check(scene))
     if material is not None:
-        results = results._replace(strength=strength(scene, material, threads=threads))
+        results = results._replace(strength=strength(scene, material))
     if not results.linkage or part is not None:
         return results
-    results = results._replace(geometry=geometry(scene, threads=threads))
+    results = results._replace(geometry=geometry(scene))
     if turning_problems(scene) or not results.whole:
         return results
-    wheel = None if steady_problems(scene) else flywheel(scene, fluctuation=fluctuations(), threads=threads)
-    return results._replace(duty=duty(scene, threads=threads), flywheel=wheel)
+    wheel = None if steady_problems(scene) else flywheel(scene, fluctuation=fluctuations())
+    return results._replace(duty=duty(scene), flywheel=wheel)
 
 
 def _outputs(scene: Scene) -> tuple[str, ...]:
@@ -133,12 +130,12 @@ def _others(scene: Scene) -> list[str]:
     return [*_known(scene, *BESIDE_FORCES), *scene.mechanism.highlights]
 
 
-def _exact(scene: Scene, threads: int | None) -> xr.Dataset:
+def _exact(scene: Scene) -> xr.Dataset:
     """Return exact peaks with their bounds; for a whole revolution means as well."""
-    worst = peaks(scene, _peaks_of(scene), threads=threads)
+    worst = peaks(scene, _peaks_of(scene))
     if int(worst["status"]):
         return worst
     shaking = [name for name in SHAKING if name in _others(scene)]
     forces = scene.mechanism.peak_quantities(scene.drive)
     averages = [f"{name}_{kind}" for name in (*forces, *shaking) for kind in ("mean", "rms")]
-    return worst.assign(peaks(scene, averages, threads=threads).data_vars)
+    return worst.assign(peaks(scene, averages).data_vars)

@@ -12,7 +12,7 @@ from linksweep.scene.scene import Scene
 
 
 def quantities_with(
-    changed: Mapping[str, float], scene: Scene, grid: Grid, names: tuple[str, ...], threads: int | None = None
+    changed: Mapping[str, float], scene: Scene, grid: Grid, names: tuple[str, ...]
 ) -> dict[str, xr.DataArray]:
     """Return quantities of a scene that is sampled at the grid's angles, with some inputs of the physics replaced.
 
@@ -22,5 +22,5 @@ def quantities_with(
     inputs = scene.inputs
     forms = tuple((name, changed.get(name, form)) for name, form in inputs.forms)
     fields = {name: field for name, field in inputs.fields.items() if name not in changed}
-    results = evaluate(plan(scene.table, names, forms), fields, grid, inputs.sizes, threads)
+    results = evaluate(plan(scene.table, names, forms), fields, grid, inputs.sizes)
     return {name: xr.DataArray(field.values, dims=field.dims) for name, field in results.items()}

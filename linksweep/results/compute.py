@@ -139,12 +139,7 @@ def counts_without_angles(scene: Scene) -> dict[str, int]:
 
 
 def compute(
-    scene: Scene,
-    grid: Grid,
-    names: tuple[str, ...],
-    threads: int | None = None,
-    known: Mapping[str, Field] | None = None,
-    solver: str = "fast",
+    scene: Scene, grid: Grid, names: tuple[str, ...], known: Mapping[str, Field] | None = None, solver: str = "fast"
 ) -> dict[str, Field]:
     """Return quantities of a scene that is sampled at the grid's angles; those that are `known` are not computed."""
     known, inputs = known or {}, scene.inputs
@@ -153,7 +148,7 @@ def compute(
         return {name: known[name] for name in names}
     forms = (*inputs.forms, *((name, field.dims) for name, field in known.items()))
     request = planned(scene, missing, forms, solver)
-    fields = evaluate(request, {**inputs.fields, **known}, grid, inputs.sizes, threads)
+    fields = evaluate(request, {**inputs.fields, **known}, grid, inputs.sizes)
     return {name: known[name] if name in known else fields[name] for name in names}
 
 
@@ -205,11 +200,11 @@ def surely_ok(scene: Scene) -> bool:
     return scene.bare.mechanism.always_ok(scene.drive)
 
 
-def sample_status(scene: Scene, grid: Grid, threads: int | None = None) -> Field:
+def sample_status(scene: Scene, grid: Grid) -> Field:
     """Return the status of each sample (int8); 0 without computing where the mechanism's numbers show it."""
     if surely_ok(scene):
         return zeros_of("status", scene, grid, np.int8)
-    status = compute(scene, grid, ("status",), threads)["status"]
+    status = compute(scene, grid, ("status",))["status"]
     return Field(status.dims, status.values.astype(np.int8))
 
 

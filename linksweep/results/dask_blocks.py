@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import wraps
-from inspect import unwrap
 from typing import Any, ParamSpec
 
 import numpy as np
@@ -82,7 +81,7 @@ def by_blocks(*, of_samples: bool) -> Callable[[Function[P]], Function[P]]:
                 return function(*arguments, **options)
             scene = with_sections(scene, _requested(arguments, options))
             others = {n: list(v) if isinstance(v, Iterator) else v for n, v in options.items() if n != "scene"}
-            return _lazily(computed, scene, arguments[1:], others, of_samples)
+            return _lazily(computed, function, scene, arguments[1:], others, of_samples)
 
         return computed
 
@@ -96,13 +95,19 @@ def _requested(arguments: tuple[Any, ...], options: Mapping[str, Any]) -> Any:
 
 
 def _lazily(
-    function: Callable, scene: Scene, arguments: tuple[Any, ...], options: dict[str, Any], of_samples: bool
+    function: Callable,
+    of_one: Callable,
+    scene: Scene,
+    arguments: tuple[Any, ...],
+    options: dict[str, Any],
+    of_samples: bool,
 ) -> xr.Dataset:
+    """Return the lazy result of a decorated function; `of_one` is the function itself, which computes at once."""
     scene = in_memory(scene, [path for path in lazy_paths(scene) if scene.arrays[path].dims in ((), (path,))])
     if not lazy_paths(scene):
         return function(scene, *arguments, **options)
     options["threads"] = 1 if options.get("threads") is None else options["threads"]
-    one, order, deciding = _looks(lambda scene: unwrap(function)(scene, *arguments, **options), scene)
+    one, order, deciding = _looks(lambda scene: of_one(scene, *arguments, **options), scene)
     known = _known(scene, one)
     dims: Dims = {name: v.dims for name, v in one.variables.items() if name not in known}
     dims = dims if of_samples else {**dims, "status": order}

@@ -8,7 +8,8 @@ from typing import Any
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from linksweep.base.validate import choice_problems, count_problems, quote, refuse
+from linksweep.base.validate import choice_problems, quote, refuse
+from linksweep.engine.threads import limits_threads
 from linksweep.results.compute import angles_of, either, part_of, requested, require_scene
 from linksweep.results.cylinders.cylinder_peaks import peaks_of_cylinders
 from linksweep.results.cylinders.multi_cylinder import MultiCylinder
@@ -23,6 +24,7 @@ OF_CYLINDERS = "must be left out: peaks of several cylinders are those of the wh
 
 
 @by_blocks(of_samples=False)
+@limits_threads
 def peaks(
     scene: Scene | MultiCylinder,
     of: str | Iterable[str] | None = None,
@@ -104,7 +106,7 @@ def peaks(
     1
     """
     word, angles = either(theta2=theta2, theta=theta)
-    refuse([*count_problems("threads", threads), *_solver_problems(solver, angles)])
+    refuse(_solver_problems(solver, angles))
     names = None if of is None else requested("of", of, scene)
     samples = f"is of exact peaks, {word} of samples: give one of them"
     refuse([] if angles is None or between is None else [f"between = {quote(between)}: {samples}"])
@@ -112,10 +114,10 @@ def peaks(
         refuse([] if between is None else [f"between = {quote(between)}: {OF_CYLINDERS}"])
         exact = "must be left out: peaks of several cylinders are exact"
         refuse([] if angles is None else [f"{word} = {quote(angles)}: {exact}"])
-        return peaks_of_cylinders(scene.in_memory, names, threads)
+        return peaks_of_cylinders(scene.in_memory, names)
     require_scene(scene)
     sampled, part = angles_of(scene, theta2=theta2, theta=theta), part_of("between", between, scene)
-    return peaks_of_scene(scene, names, threads, sampled, solver, part)
+    return peaks_of_scene(scene, names, sampled, solver, part)
 
 
 def quantity_of(name: str) -> str:

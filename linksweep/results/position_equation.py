@@ -7,6 +7,7 @@ from typing import Any
 
 import xarray as xr
 
+from linksweep.engine.threads import limits_threads
 from linksweep.results.compute import compute, require
 from linksweep.results.dataset import provenance, variable
 from linksweep.results.sweep import sweep
@@ -15,6 +16,7 @@ from linksweep.scene.designs.lazy import in_memory
 from linksweep.scene.scene import Scene
 
 
+@limits_threads
 def position_equation(scene: Scene, theta2: Any, *, threads: int | None = None) -> xr.Dataset:
     """Return the position equation of a four-bar as document 2 (ME 470) writes it.
 
@@ -60,9 +62,9 @@ def position_equation(scene: Scene, theta2: Any, *, threads: int | None = None) 
     formulas, roots = mechanism.position_equation
     both = replace(scene, mechanism=replace(mechanism, branch="both"), drive="crank", loads=())
     grid = both.grid(angles)
-    fields = compute(both.at(grid), grid, tuple(formulas), threads)
+    fields = compute(both.at(grid), grid, tuple(formulas))
     order = (*both.inputs.sizes, grid.dim)
-    page = sweep(both, angles, of=list(roots), threads=threads)
+    page = sweep(both, angles, of=list(roots))
     coefficients = {name: variable(fields[name], "1", formula, order) for name, formula in formulas.items()}
     for name, formula in roots.items():
         page[name].attrs["long_name"] += f"; {formula}"

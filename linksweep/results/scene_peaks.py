@@ -84,24 +84,16 @@ class Result(NamedTuple):
 
 
 def peaks_of_scene(
-    scene: Scene,
-    of: list[str] | None,
-    threads: int | None,
-    angles: ArrayLike | None = None,
-    solver: str = "fast",
-    part: Part | None = None,
+    scene: Scene, of: list[str] | None, angles: ArrayLike | None = None, solver: str = "fast", part: Part | None = None
 ) -> xr.Dataset:
     """Return the peaks of a scene: exact, of the cycle or of a `part` of it, or the largest of a grid's samples."""
     items, scene = _requests(scene, of if of is None else tuple(of)), with_sections(scene, of)
-    if angles is None:
-        result = _exact(scene, items, threads, part)
-    else:
-        result = _of_samples(scene, angles, items, threads, solver)
+    result = _exact(scene, items, part) if angles is None else _of_samples(scene, angles, items, solver)
     grid = "" if angles is None else f", {result.grid.dim}={len(result.grid.angles)}"
     by = "" if solver == "fast" else f", solver={solver!r}"
     between = "" if part is None else f", between={part}"
     command = f"linksweep.peaks(scene{'' if of is None else f', of={of}'}{grid}{between}{by})"
-    status, coordinates = status_of(scene, result, threads), design_coordinates(result.sampled)
+    status, coordinates = status_of(scene, result), design_coordinates(result.sampled)
     variables = labelled(items, result)
     variables |= {} if part is None else _at_ends(variables, part)
     variables |= {"status": status}
@@ -167,12 +159,12 @@ def needed(items: list[Request]) -> tuple[tuple[str, ...], tuple[Power, ...]]:
     return tuple(signals), tuple(dict.fromkeys(power for item in items for power in item.powers))
 
 
-def _exact(scene: Scene, items: list[Request], threads: int | None, part: Part | None = None) -> Result:
+def _exact(scene: Scene, items: list[Request], part: Part | None = None) -> Result:
     refuse(angles_missing(scene))
     turns = round(scene.period / scene.mechanism.period)
     angles = STATUS_ANGLES * turns if part is None else np.linspace(*part, STATUS_ANGLES + 1)
     grid = scene.grid(angles)
-    assembly, (signals, powers) = assembly_of(scene, threads), needed(items)
+    assembly, (signals, powers) = assembly_of(scene), needed(items)
     sampled, known_signals = scene.at_one_angle, {signal: signal for signal in signals}
     if may_jam(scene):
         known_signals = {signal: unless_jammed(signal) for signal in signals}
@@ -180,12 +172,12 @@ def _exact(scene: Scene, items: list[Request], threads: int | None, part: Part |
     if not signals:
         peaks = {}
     elif part is None:
-        peaks = exact_peaks(scene, searched, assembly, threads)
+        peaks = exact_peaks(scene, searched, assembly)
     else:
-        peaks = peaks_within(scene, searched, part, threads)
+        peaks = peaks_within(scene, searched, part)
     largest = of_designs_that_share(sampled, {signal: peaks[known_signals[signal]] for signal in signals})
-    largest = of_free_angles(scene, largest, assembly, part, threads)
-    averages = _means(scene, powers, part, threads) if powers else {}
+    largest = of_free_angles(scene, largest, assembly, part)
+    averages = _means(scene, powers, part) if powers else {}
     if part is None:
         known, by_samples = with_dead_centres(scene, assembly), scene.table.limits is not None
     else:
@@ -193,16 +185,16 @@ def _exact(scene: Scene, items: list[Request], threads: int | None, part: Part |
     return Result(sampled, grid, known, by_samples, largest, averages)
 
 
-def _means(scene: Scene, powers: tuple[Power, ...], part: Part | None, threads: int | None) -> Averages:
+def _means(scene: Scene, powers: tuple[Power, ...], part: Part | None) -> Averages:
     """Return the means over time of powers of quantities, over the angles at which friction does not jam a design."""
     sampled = scene.at_one_angle
     known = names_unless_jammed(sampled, tuple(name for name, _ in powers))
     named = {(name, n): (known[name], n) for name, n in powers}
-    averages = means(scene, tuple(named.values()), changing_pace(sampled), part, threads)
+    averages = means(scene, tuple(named.values()), changing_pace(sampled), part)
     return {power: averages[name] for power, name in named.items()}
 
 
-def _of_samples(scene: Scene, angles: ArrayLike, items: list[Request], threads: int | None, solver: str) -> Result:
+def _of_samples(scene: Scene, angles: ArrayLike, items: list[Request], solver: str) -> Result:
     """Return the largest of a grid's samples, without refinement."""
     exact = [f"{item.quantity.name}_{item.summary}" for item in items if item.summary in ("bound", "samples")]
     refuse([f'of = "{name}": is of exact peaks only; leave out theta2' for name in exact])
@@ -219,26 +211,24 @@ def _of_samples(scene: Scene, angles: ArrayLike, items: list[Request], threads: 
     request = planned(sampled, tuple(dict.fromkeys(r.name for r in reductions)), sampled.inputs.forms, solver)
     reduced = {}
     if reductions:
-        reduced = reduce_rows(request, reductions, sampled.inputs.fields, grid, sampled.inputs.sizes, threads)
+        reduced = reduce_rows(request, reductions, sampled.inputs.fields, grid, sampled.inputs.sizes)
     extremes = {}
     for signal, reduction in largest.items():
         value, angle = reduced[reduction]
         extremes[signal] = SignalPeak(value, angle, value, value)
     extremes = of_designs_that_share(sampled, extremes)
     averaged = {power: reduced[reduction][0] for power, reduction in averages.items()}
-    averaged |= _over_time(sampled, grid, powers, pace[0], threads, solver) if pace else {}
+    averaged |= _over_time(sampled, grid, powers, pace[0], solver) if pace else {}
     # a search for where designs close takes longer than samples, whose status shows enough
     by_samples = scene.table.limits is not None
-    assembly = Field((), np.zeros(())) if by_samples else assembly_of(scene, threads)
+    assembly = Field((), np.zeros(())) if by_samples else assembly_of(scene)
     return Result(sampled, grid, assembly, by_samples, extremes, averaged)
 
 
-def _over_time(
-    sampled: Scene, grid: Grid, powers: tuple[Power, ...], pace: str, threads: int | None, solver: str
-) -> Averages:
+def _over_time(sampled: Scene, grid: Grid, powers: tuple[Power, ...], pace: str, solver: str) -> Averages:
     """Return means of a grid's samples, each weighted by the time that the crank takes for it."""
     names = tuple(dict.fromkeys([name for name, _ in powers] + [pace]))
-    fields, averages = compute(sampled, grid, names, threads, solver=solver), {}
+    fields, averages = compute(sampled, grid, names, solver=solver), {}
     for name, power in powers:
         dims = tuple(d for d in (*sampled.inputs.sizes, grid.dim) if d in {*fields[name].dims, *fields[pace].dims})
         value, speed = aligned(fields[name], dims), np.abs(aligned(fields[pace], dims))
@@ -249,14 +239,14 @@ def _over_time(
     return averages
 
 
-def status_of(scene: Scene, result: Result, threads: int | None) -> xr.Variable:
+def status_of(scene: Scene, result: Result) -> xr.Variable:
     """Return the status of peaks: the assembly's 0, 1 or 2; 1 if some sample is not ok, 3 if a peak or mean is inf.
 
     Peaks and means of designs without any sample that is ok become NaN.
     """
     sampled, grid, status, by_samples, largest, averages = result
     if not surely_ok(scene):
-        samples = _extremes_of_status(scene, status, sampled, grid, threads)
+        samples = _extremes_of_status(scene, status, sampled, grid)
         dims, (known, least, worst) = side_by_side((status, *samples))
         closes = (least < CANNOT_ASSEMBLE) | (worst > TOGGLE) | (not by_samples)
         known = np.where((worst > 0.0) & (known == 0.0), np.where(closes, float(PARTIAL), NEVER), known)
@@ -273,30 +263,26 @@ def status_of(scene: Scene, result: Result, threads: int | None) -> xr.Variable:
     return plain(Field(dims, aligned(status, dims).astype(np.int8)), words)
 
 
-def _extremes_of_status(
-    scene: Scene, assembly: Field, sampled: Scene, grid: Grid, threads: int | None
-) -> tuple[Field, Field]:
+def _extremes_of_status(scene: Scene, assembly: Field, sampled: Scene, grid: Grid) -> tuple[Field, Field]:
     """Return the best and the worst status of each design's samples; NaN of designs whose assembly says enough."""
     least, worst = (empty(scene, ("status",))["status"] for _ in range(2))
     whole_cycle = grid.period > 0.0
     if whole_cycle and (assembly.values == PARTIAL).all():  # no sample changes anything
         return least, worst
     if whole_cycle and scene.mechanism.ok_clear_of_toggles(scene.drive) and not changes(scene, ("status",)):
-        for group, *numbers in _status_of_turning(scene, assembly, grid, threads):
+        for group, *numbers in _status_of_turning(scene, assembly, grid):
             at = flat_index(least, group.places, len(group.designs))
             least.values.reshape(-1)[at], worst.values.reshape(-1)[at] = numbers
         return least, worst
     request = plan(scene.table, ("status",), sampled.inputs.forms)
     if any(grid.dim in sampled.inputs.fields[name].dims for name in request.inputs if name in sampled.inputs.fields):
         sampled = scene.at(grid)
-    reduced = reduce_rows(request, STATUS_EXTREMES, sampled.inputs.fields, grid, sampled.inputs.sizes, threads)
+    reduced = reduce_rows(request, STATUS_EXTREMES, sampled.inputs.fields, grid, sampled.inputs.sizes)
     least, worst = (reduced[extreme][0] for extreme in STATUS_EXTREMES)
     return least, worst
 
 
-def _status_of_turning(
-    scene: Scene, assembly: Field, grid: Grid, threads: int | None
-) -> Iterator[tuple[Group, np.ndarray, np.ndarray]]:
+def _status_of_turning(scene: Scene, assembly: Field, grid: Grid) -> Iterator[tuple[Group, np.ndarray, np.ndarray]]:
     """Yield the designs that close at every angle, with the best and the worst status of their samples.
 
     One that is ok where it comes nearest to a toggle is ok everywhere; only others are sampled.
@@ -310,7 +296,7 @@ def _status_of_turning(
         if not ok.all():
             others = turning.some(np.flatnonzero(~ok))
             request, inputs = designs_on(scene, others.designs, ("status",), grid)
-            reduced = reduce_rows(request, STATUS_EXTREMES, inputs, grid, {ONE: len(others.designs)}, threads)
+            reduced = reduce_rows(request, STATUS_EXTREMES, inputs, grid, {ONE: len(others.designs)})
             least, worst = (reduced[extreme][0].values for extreme in STATUS_EXTREMES)
             yield others, least, worst
 

@@ -9,9 +9,10 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from linksweep.base.validate import choice_problems, count_problems, refuse
+from linksweep.base.validate import choice_problems, refuse
 from linksweep.chains.between_links import force_name
 from linksweep.engine.run import Field, Grid
+from linksweep.engine.threads import limits_threads
 from linksweep.results.compute import (
     angles_of,
     blank,
@@ -36,6 +37,7 @@ SOLVERS = ("fast", "superposed", *DENSE)
 
 
 @by_blocks(of_samples=True)
+@limits_threads
 def sweep(
     scene: Scene,
     angles: ArrayLike | None = None,
@@ -104,7 +106,7 @@ def sweep(
     (181.633, 'N')
     """
     require_scene(scene)
-    refuse([*choice_problems("solver", solver, SOLVERS), *count_problems("threads", threads)])
+    refuse(choice_problems("solver", solver, SOLVERS))
     word, quantities = either(of=of, outputs=outputs)
     names = default_names(scene) if quantities is None else _names(scene, word, requested(word, quantities, scene))
     with_place, names = STATUS_AT in names, tuple(name for name in names if name != STATUS_AT)
@@ -114,15 +116,15 @@ def sweep(
     grid = scene.grid(angles)
     refuse(_bound_missing(names, solver))
     sampled = scene.at(grid)
-    status = sample_status(sampled, grid, threads)
-    known = dense_unknowns(sampled, grid, solver == "refined", threads) if solver in DENSE else {}
+    status = sample_status(sampled, grid)
+    known = dense_unknowns(sampled, grid, solver == "refined") if solver in DENSE else {}
     if "cond" in names:
-        known["cond"] = condition_number(sampled, grid, threads)
-    fields = compute(sampled, grid, names, threads, known, solver)
+        known["cond"] = condition_number(sampled, grid)
+    fields = compute(sampled, grid, names, known, solver)
     blank(fields, status)
     command = _command(grid.dim, angles, None if quantities is None else names, solver)
     cycle = described(scene, sampled, grid, fields, status, command)
-    return cycle.assign(status_at=_status_at(sampled, grid, threads)) if with_place else cycle
+    return cycle.assign(status_at=_status_at(sampled, grid)) if with_place else cycle
 
 
 def default_names(scene: Scene) -> tuple[str, ...]:
@@ -138,9 +140,9 @@ def _names(scene: Scene, word: str, names: list[str]) -> tuple[str, ...]:
     return tuple(name for name in names if name != "status")
 
 
-def _status_at(sampled: Scene, grid: Grid, threads: int | None) -> xr.Variable:
+def _status_at(sampled: Scene, grid: Grid) -> xr.Variable:
     """Return the place that fails first at each sample, 0 where none does."""
-    place = compute(sampled, grid, (STATUS_AT,), threads)[STATUS_AT]
+    place = compute(sampled, grid, (STATUS_AT,))[STATUS_AT]
     attributes = flags(STATUS_AT_LONG_NAME, ("none", *sampled.mechanism.places))
     return plain(Field(place.dims, place.values.astype(np.int8)), attributes)
 

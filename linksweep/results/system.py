@@ -9,11 +9,12 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from linksweep.base.conversion import to_float64
-from linksweep.base.validate import choice_problems, count_problems, refuse
+from linksweep.base.validate import choice_problems, refuse
 from linksweep.chains.rows.bodies import Equation
 from linksweep.engine.linear import solve as linear
 from linksweep.engine.linear.solve import Structure
 from linksweep.engine.run import Field, Grid
+from linksweep.engine.threads import limits_threads
 from linksweep.results.compute import angles_of, blank, compute, require_scene, sample_status
 from linksweep.results.dataset import index_coordinate, provenance, status_attributes
 from linksweep.scene.designs.lazy import in_memory
@@ -25,6 +26,7 @@ System = tuple[tuple[str, ...], tuple[Equation, ...]]
 """Unknowns and equations."""
 
 
+@limits_threads
 def system(
     scene: Scene,
     angles: ArrayLike | None = None,
@@ -96,16 +98,16 @@ def system(
     ['T12', 'T14']
     """
     require_scene(scene)
-    refuse([*choice_problems("form", form, FORMS), *count_problems("threads", threads)])
+    refuse(choice_problems("form", form, FORMS))
     index = scene.mechanism.index
     angles = angles_of(scene, angles=angles, theta2=theta2, theta=theta)
     refuse([f"{index} is missing: give an angle or angles, in degrees"] if angles is None else [])
     scene = in_memory(scene)
     grid = scene.grid(as_angles(angles))
     sampled = scene.at(grid)
-    status = sample_status(sampled, grid, threads)
+    status = sample_status(sampled, grid)
     unknowns, equations = of_form(scene, form)
-    dims, matrix, rhs = assembled(sampled, grid, form, threads)
+    dims, matrix, rhs = assembled(sampled, grid, form)
     both = {"matrix": Field((*dims, "equation", "unknown"), matrix), "rhs": Field((*dims, "equation"), rhs)}
     blank(both, status)
     variables = {
@@ -142,12 +144,10 @@ def names_in(equations: tuple[Equation, ...]) -> tuple[str, ...]:
     return tuple(sorted(names | {row.right_side for row in equations}))
 
 
-def assembled(
-    scene: Scene, grid: Grid, form: str, threads: int | None = None
-) -> tuple[tuple[str, ...], np.ndarray, np.ndarray]:
+def assembled(scene: Scene, grid: Grid, form: str) -> tuple[tuple[str, ...], np.ndarray, np.ndarray]:
     """Return dims, matrix and right side of a square system, for every design and angle."""
     unknowns, equations = of_form(scene, form)
-    fields = compute(scene, grid, names_in(equations), threads)
+    fields = compute(scene, grid, names_in(equations))
     sizes = _sizes(scene, grid, fields)
     dims, shape = tuple(sizes), tuple(sizes.values())
     matrix, rhs = np.zeros((*shape, len(equations), len(unknowns))), np.zeros((*shape, len(equations)))
@@ -204,27 +204,27 @@ class Sampled(NamedTuple):
         return Field(self.dims, row.reshape(self.shape))
 
 
-def dense_unknowns(scene: Scene, grid: Grid, refined: bool = False, threads: int | None = None) -> dict[str, Field]:
+def dense_unknowns(scene: Scene, grid: Grid, refined: bool = False) -> dict[str, Field]:
     """Return the unknowns of the square system by elimination with partial pivoting.
 
     Rows and columns of the matrix are first scaled to one size, so that units and scales do not decide the pivots.
     `refined` adds one step of iterative refinement.
     """
-    systems, names = sampled_systems(scene, grid, threads), of_form(scene, "reduced")[0]
-    rows = linear.unknowns(systems.structure, systems.values, refined, threads)
+    systems, names = sampled_systems(scene, grid), of_form(scene, "reduced")[0]
+    rows = linear.unknowns(systems.structure, systems.values, refined)
     return {name: systems.field(row) for name, row in zip(names, rows, strict=True)}
 
 
-def condition_number(scene: Scene, grid: Grid, threads: int | None = None) -> Field:
+def condition_number(scene: Scene, grid: Grid) -> Field:
     """Return the 1-norm condition number of the square system, its rows and columns scaled to one size."""
-    systems = sampled_systems(scene, grid, threads)
-    return systems.field(linear.condition(systems.structure, systems.values, threads))
+    systems = sampled_systems(scene, grid)
+    return systems.field(linear.condition(systems.structure, systems.values))
 
 
-def sampled_systems(scene: Scene, grid: Grid, threads: int | None) -> Sampled:
+def sampled_systems(scene: Scene, grid: Grid) -> Sampled:
     """Return the square systems of a scene at all samples."""
     structure, names = structure_of(scene)
-    fields = compute(scene, grid, names, threads)
+    fields = compute(scene, grid, names)
     sizes = _sizes(scene, grid, fields)
     dims, shape = tuple(sizes), tuple(sizes.values())
     values = [np.broadcast_to(aligned(fields[name], dims), shape).reshape(-1) for name in names]

@@ -25,11 +25,9 @@ Places = Mapping[str, Array]
 """Indices of some designs along each design dim."""
 
 
-def quantities_at(
-    scene: Scene, names: tuple[str, ...], designs: Array, angles: Array, threads: int | None = None
-) -> Array:
+def quantities_at(scene: Scene, names: tuple[str, ...], designs: Array, angles: Array) -> Array:
     """Return values (names, pairs) at pairs of a design and an angle [degree]."""
-    return Pairs(scene, designs, angles, loaded=changes(scene, names)).values(names, threads)
+    return Pairs(scene, designs, angles, loaded=changes(scene, names)).values(names)
 
 
 def changes(scene: Scene, names: tuple[str, ...]) -> bool:
@@ -50,9 +48,7 @@ class Pairs:
         if self.count:
             self.inputs, self.grid, self.sample = _inputs_at(scene, angles, loaded)
 
-    def values(
-        self, names: tuple[str, ...], threads: int | None = None, motion: Mapping[str, Array] | None = None
-    ) -> Array:
+    def values(self, names: tuple[str, ...], motion: Mapping[str, Array] | None = None) -> Array:
         """Return values (names, pairs) of quantities.
 
         `motion` are parameters that each pair has of its own, in place of the scene's, such as omega2 and alpha2.
@@ -66,7 +62,7 @@ class Pairs:
         places = places_of(inputs.sizes, self.designs) | {dim: self.sample}
         fields = inputs_along(dim, request, inputs, places)
         fields |= {name: Field((dim,), values) for name, values in motion.items() if name in request.inputs}
-        values = evaluate(request, fields, self.grid, {}, threads)
+        values = evaluate(request, fields, self.grid, {})
         return np.stack([np.broadcast_to(values[name].values, self.count) for name in names])
 
 

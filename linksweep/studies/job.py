@@ -58,18 +58,18 @@ class Job:
         """Return the number of designs in a block."""
         return prod(block[dim].stop - block[dim].start if dim in block else n for dim, n in self.sizes.items())
 
-    def compute(self, block: Block, threads: int | None) -> xr.Dataset:
+    def compute(self, block: Block) -> xr.Dataset:
         """Return the peaks of the designs of a block, which depend on nothing else."""
-        return peaks(selected(self.scene, block), self.of, threads=threads, **self.options)
+        return peaks(selected(self.scene, block), self.of, **self.options)
 
-    def chunks(self, numbers: Iterable[int], threads: int | None) -> Generator[tuple[int, xr.Dataset], None, None]:
+    def chunks(self, numbers: Iterable[int]) -> Generator[tuple[int, xr.Dataset], None, None]:
         """Yield number and peaks of these chunks, one after the other."""
         for number in numbers:
-            yield number, self.compute(self.blocks[number], threads)
+            yield number, self.compute(self.blocks[number])
 
     def try_out(self) -> None:
         """Compute one design, so that problems of the request are raised before anything is written."""
-        self.compute({dim: slice(0, 1) for dim in self.sizes}, 1)
+        self.compute({dim: slice(0, 1) for dim in self.sizes})
 
 
 def scene_digest(scene: Scene) -> str:

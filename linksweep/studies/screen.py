@@ -19,6 +19,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.base.validate import refuse
+from linksweep.engine.threads import limits_threads
 from linksweep.files.atomic import ending_of, target_of
 from linksweep.files.netcdf import loaded, save_dataset
 from linksweep.files.progress import progress_bar
@@ -36,6 +37,7 @@ INTERVAL = 1.0
 """Seconds, at least, between two writings of the file of an unfinished screening."""
 
 
+@limits_threads
 def screen(
     scene: Any,
     parameters: Mapping[str, Any],
@@ -131,9 +133,9 @@ def screen(
     """
     further = requested("of", of, scene)
     task = screening_of(scene, parameters, minimize, maximize, subject_to, keep, bins, seed, options)
-    refuse([*counts_problems(n=n, chunk=chunk, threads=threads)])
+    refuse(counts_problems(n=n, chunk=chunk))
     client = client_of(client)
-    task, manifest = ready(task, int(n), further, threads)
+    task, manifest = ready(task, int(n), further)
     target, progress = None, None
     if path is not None:
         ending_of(path, (".nc",))
@@ -143,7 +145,7 @@ def screen(
             return loaded(target)
         progress = Progress(target.with_name(target.name + ".progress"), manifest)
     tally = _run(task, int(n), int(chunk or usual_chunk(scene, options)), threads, client, progress)
-    ds = _result(task, tally, int(n), further, threads)
+    ds = _result(task, tally, int(n), further)
     if target is not None and progress is not None:
         save_dataset(ds, target, manifest)
         progress.remove()
@@ -157,7 +159,7 @@ def _run(task: Screening, n: int, chunk: int, threads: int | None, client: Any, 
     """Return the tally of all designs, from where the progress file stands."""
     state = (progress and progress.load()) or (0, _nothing(task))  # one name, so that no stop can divide it
     starts = range(state[0], n, chunk)
-    parts = _in_turn(task, starts, n, threads) if client is None else _on_cluster(client, task, starts, n, threads)
+    parts = _in_turn(task, starts, n) if client is None else _on_cluster(client, task, starts, n, threads)
     written = monotonic()
     try:
         with progress_bar(n, "designs") as bar, contextlib.closing(parts):
@@ -184,10 +186,10 @@ def _nothing(task: Screening) -> Tally:
     return Tally(status, within, bins, np.empty(0, dtype=np.int64), np.empty((0, len(task.objectives))))
 
 
-def _in_turn(task: Screening, starts: range, n: int, threads: int | None) -> Generator[Tally, None, None]:
+def _in_turn(task: Screening, starts: range, n: int) -> Generator[Tally, None, None]:
     """Yield the tallies of chunks, one after the other."""
     for start in starts:
-        yield task.tally(start, min(start + starts.step, n), threads)
+        yield task.tally(start, min(start + starts.step, n))
 
 
 def _on_cluster(
@@ -201,7 +203,7 @@ def _on_cluster(
         while True:
             for start in remaining:
                 last = min(start + starts.step, n)
-                under_way.append(client.submit(tally_there, sent, start, last, threads or 1, pure=False))
+                under_way.append(client.submit(tally_there, sent, start, last, threads=threads or 1, pure=False))
                 if len(under_way) >= AHEAD * sum(client.nthreads().values()):
                     break
             if not under_way:
@@ -214,10 +216,10 @@ def _on_cluster(
 # ---------------------------------------------------------------------------------------- the result
 
 
-def _result(task: Screening, tally: Tally, n: int, further: list[str], threads: int | None) -> xr.Dataset:
+def _result(task: Screening, tally: Tally, n: int, further: list[str]) -> xr.Dataset:
     """Return the Dataset of a tally: peaks of the designs kept, shares and histograms of all."""
     numbers, of = tally.numbers, list(dict.fromkeys([*task.quantities, *further]))
-    ds = task.peaks(numbers if numbers.size else [0], of, threads)
+    ds = task.peaks(numbers if numbers.size else [0], of)
     if not numbers.size:
         ds = ds.isel({DIM: slice(0)})
     sound = "share of all designs drawn that are sound"

@@ -98,7 +98,7 @@ def _edges(name: str, edges: Any) -> np.ndarray:
     return array
 
 
-def ready(task: Screening, n: int, further: list[str], threads: int | None) -> tuple[Screening, dict[str, Any]]:
+def ready(task: Screening, n: int, further: list[str]) -> tuple[Screening, dict[str, Any]]:
     """Return the screening with the edges of its histograms and the words of its status, and its manifest.
 
     The first designs are computed, and values at the ends of what can be drawn are shown to the scene: what it refuses
@@ -107,9 +107,9 @@ def ready(task: Screening, n: int, further: list[str], threads: int | None) -> t
     ends = np.tile(EXTREMES, (len(task.parameters), 1))
     with_designs(task.scene, task.parameters, ends, np.arange(2), DIM)
     first = range(min(n, PILOT))
-    pilot = task.peaks(first, task.quantities, threads)
+    pilot = task.peaks(first, task.quantities)
     if further:
-        task.peaks(range(1), [*task.quantities, *further], 1)
+        task.peaks(range(1), [*task.quantities, *further])
     refuse([line for name in task.names for line in name_problems("of", name, map(str, pilot.variables))])
     values = values_of(pilot, task.names)
     edges = {name: _between(values[name], len(own)) if np.isnan(own[0]) else own for name, own in task.edges.items()}

@@ -12,6 +12,7 @@ import xarray as xr
 
 from linksweep.base.validate import refuse
 from linksweep.base.version import installed_version
+from linksweep.engine.threads import limits_threads
 from linksweep.results.front import has_peaks
 from linksweep.results.peaks import peaks, quantity_of
 from linksweep.scene.designs.drawing import draw
@@ -56,14 +57,14 @@ class Screening:
         results = [name for name in self.names if name not in self.parameters and name != "status"]
         return list(dict.fromkeys(map(quantity_of, results)))
 
-    def peaks(self, designs: Iterable[int], of: list[str], threads: int | None) -> xr.Dataset:
+    def peaks(self, designs: Iterable[int], of: list[str]) -> xr.Dataset:
         """Return the peaks of some designs."""
         drawn = draw(self.scene, self.parameters, designs=designs, seed=self.seed, dim=DIM)
-        return peaks(drawn, of, threads=threads, **self.options)
+        return peaks(drawn, of, **self.options)
 
-    def tally(self, first: int, last: int, threads: int | None) -> Tally:
+    def tally(self, first: int, last: int) -> Tally:
         """Return the tally of the designs from `first` to before `last`."""
-        ds = self.peaks(range(first, last), self.quantities, threads)
+        ds = self.peaks(range(first, last), self.quantities)
         values, status = values_of(ds, self.names), values_of(ds, ["status"])["status"]
         within_each = within_limits(values, self.limits)
         within = np.broadcast_to(has_peaks(ds), status.shape).copy()
@@ -84,12 +85,13 @@ class Screening:
         )
 
 
-def tally_there(task: Screening, first: int, last: int, threads: int | None) -> Tally:
+@limits_threads
+def tally_there(task: Screening, first: int, last: int, *, threads: int) -> Tally:
     """Return a tally on a worker of a cluster, which must have the version of linksweep that made the task."""
     here = installed_version()
     other = f"a worker has linksweep {here}, and this is {task.version}: install the same on all"
     refuse([] if here == task.version else [other])
-    return task.tally(first, last, threads)
+    return task.tally(first, last)
 
 
 def values_of(ds: xr.Dataset, names: Iterable[str]) -> dict[str, np.ndarray]:

@@ -24,6 +24,7 @@ from typing import Any
 import xarray as xr
 
 from linksweep.base.validate import count_problems, refuse
+from linksweep.engine.threads import limits_threads
 from linksweep.files.atomic import ending_of, sync_folder, target_of
 from linksweep.files.progress import progress_bar
 from linksweep.files.seal import seal, sealed
@@ -54,6 +55,7 @@ ADVICE = (
 )
 
 
+@limits_threads
 def study(
     scene: Any,
     path: str | os.PathLike[str],
@@ -117,7 +119,7 @@ def study(
     True
     """
     require_scene(scene)
-    refuse([*count_problems("chunk", chunk), *count_problems("threads", threads)])
+    refuse(count_problems("chunk", chunk))
     ending_of(path, (".nc",), ADVICE)
     client = client_of(client)
     scene = in_memory(scene)
@@ -177,7 +179,7 @@ def _run(job: Job, kept: Partial, target: Path, threads: int | None, client: Any
     """Compute missing chunks, assemble the file, and rename it."""
 
     def compute(numbers: Iterable[int]) -> Generator[int, None, None]:
-        results = job.chunks(numbers, threads) if client is None else on_cluster(client, job, numbers, threads)
+        results = job.chunks(numbers) if client is None else on_cluster(client, job, numbers, threads)
         with contextlib.closing(results):
             for number, ds in results:
                 kept.keep(number, ds.drop_vars(ds.coords).assign_attrs(scene=""))  # the file has the whole scene

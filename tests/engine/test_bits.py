@@ -14,7 +14,7 @@ import xarray as xr
 from long import long_but
 
 import linksweep as ls
-from linksweep.engine import run
+from linksweep.engine import run, threads
 from linksweep.engine.trace.plan import plan
 
 KINEMATICS = ("theta3", "theta4", "omega3", "omega4", "alpha3", "alpha4")
@@ -146,8 +146,8 @@ def test_results_written_past_the_caches_agree(sweep, monkeypatch, count):
 def test_threads_share_the_work(sweep, monkeypatch):
     """The test above relies on this."""
     monkeypatch.setattr(run, "SAMPLES_PER_THREAD", 100)
-    submitted, pool = [], run._pool
-    monkeypatch.setattr(run, "_pool", lambda process: submitted.append(process) or pool(process))
+    submitted, pool = [], threads._pool
+    monkeypatch.setattr(threads, "_pool", lambda process: submitted.append(process) or pool(process))
     sweep("compiled", designs(), 72, of=KINEMATICS, threads=1)
     assert not submitted
     sweep("compiled", designs(), 72, of=KINEMATICS, threads=2)

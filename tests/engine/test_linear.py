@@ -12,6 +12,7 @@ from linksweep.engine import run
 from linksweep.engine.kernel import machine_code
 from linksweep.engine.linear import elimination, solve
 from linksweep.engine.linear.solve import Structure
+from linksweep.engine.threads import at_most
 
 EPS = 2.0**-52
 
@@ -35,11 +36,11 @@ def way(request, monkeypatch):
     monkeypatch.setattr(run, "COMPILE_AFTER", -1 if request.param == "compiled" else np.inf)
 
 
-def both_ways(monkeypatch, *arguments, **how) -> list[np.ndarray]:
+def both_ways(monkeypatch, *arguments, **how) -> list[list[np.ndarray]]:
     results = []
     for most in (-1, np.inf):
         monkeypatch.setattr(run, "COMPILE_AFTER", most)
-        results.append([solve.unknowns(*arguments, **how), solve.condition(*arguments, threads=how.get("threads"))])
+        results.append([solve.unknowns(*arguments, **how), solve.condition(*arguments)])
     return results
 
 
@@ -94,7 +95,8 @@ def test_refinement_returns_the_digits_that_an_ill_conditioned_system_loses(way)
 def test_compiled_bits_are_those_of_numpy(n, samples, refined, threads, monkeypatch):
     monkeypatch.setattr(solve, "SAMPLES_PER_THREAD", 1)
     arguments = (structure(n), sources(even(n, samples, 3)))
-    (compiled, condition), (interpreted, plain) = both_ways(monkeypatch, *arguments, refined=refined, threads=threads)
+    with at_most(threads):
+        (compiled, condition), (interpreted, plain) = both_ways(monkeypatch, *arguments, refined=refined)
     np.testing.assert_array_equal(compiled, interpreted)
     np.testing.assert_array_equal(condition, plain)
 

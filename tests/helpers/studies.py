@@ -96,12 +96,12 @@ def stop_after(count: int, patch) -> list[object]:
     computed: list[object] = []
     compute = Job.compute
 
-    def watched(job, block, threads):
+    def watched(job, block):
         if block != {"speed": slice(0, 1)}:  # not the one that is tried out
             if len(computed) == count:
                 raise KeyboardInterrupt
             computed.append(block)
-        return compute(job, block, threads)
+        return compute(job, block)
 
     patch.setattr(Job, "compute", watched)
     return computed
@@ -111,11 +111,11 @@ def hang_after(count: int) -> None:
     """This process computes so many more chunks, then waits to be stopped: it does not finish by itself."""
     compute, left = Job.compute, [count]
 
-    def hanging(job, block, threads):
+    def hanging(job, block):
         left[0] -= block != {"speed": slice(0, 1)}  # not the one that is tried out
         if left[0] < 0:
             time.sleep(3600)
-        return compute(job, block, threads)
+        return compute(job, block)
 
     Job.compute = hanging
 

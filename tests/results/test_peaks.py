@@ -344,9 +344,9 @@ def test_the_status_of_machines_at_and_near_a_change_point_is_that_of_720_sample
 def test_the_status_is_sampled_of_four_bars_that_touch_a_toggle_alone(monkeypatch):
     sampled = []
 
-    def reduce_rows(plan, reductions, inputs, grid, sizes, threads):
+    def reduce_rows(plan, reductions, inputs, grid, sizes):
         sampled.append([*sizes.values()])
-        return run.reduce_rows(plan, reductions, inputs, grid, sizes, threads)
+        return run.reduce_rows(plan, reductions, inputs, grid, sizes)
 
     monkeypatch.setattr(scene_peaks, "reduce_rows", reduce_rows)
     ls.peaks(change_points("FourBar"), of=["omega3"])

@@ -192,11 +192,11 @@ def stopping(patch, after: int) -> list[int]:
     starts: list[int] = []
     tally = Screening.tally
 
-    def watched(task, first, last, threads):
+    def watched(task, first, last):
         if len(starts) == after:
             raise KeyboardInterrupt
         starts.append(first)
-        return tally(task, first, last, threads)
+        return tally(task, first, last)
 
     patch.setattr(Screening, "tally", watched)
     return starts

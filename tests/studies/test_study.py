@@ -19,6 +19,7 @@ from studies import SCENES, assert_same, grid, many
 
 import linksweep as ls
 from linksweep.cli.main import main
+from linksweep.engine.threads import most_threads
 from linksweep.scene.designs.selection import blocks
 from linksweep.studies import assemble
 from linksweep.studies import job as chunk_module
@@ -64,14 +65,12 @@ def test_options_of_peaks_are_passed_on(tmp_path):
     assert study.T12_mean.identical(ls.peaks(many(), "T12_mean", theta2=angles).T12_mean)
 
 
-def test_threads_are_passed_on(tmp_path, monkeypatch):
+def test_threads_are_limited_in_every_chunk(tmp_path, monkeypatch):
     seen = []
     peaks = chunk_module.peaks
-    monkeypatch.setattr(
-        chunk_module, "peaks", lambda *a, threads, **b: seen.append(threads) or peaks(*a, threads=threads, **b)
-    )
+    monkeypatch.setattr(chunk_module, "peaks", lambda *a, **b: seen.append(most_threads()) or peaks(*a, **b))
     ls.study(many(), tmp_path / "study.nc", of=["F32"], chunk=30, threads=2)
-    assert seen == [1, 2, 2]  # the first is the one design that is tried out
+    assert seen == [2, 2, 2]  # the first is the one design that is tried out
 
 
 def test_blocks_cover_all_designs_once_within_their_size():

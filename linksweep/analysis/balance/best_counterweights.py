@@ -26,6 +26,7 @@ from linksweep.analysis.balance.counterweights import Counterweight, by_link
 from linksweep.analysis.balance.regressor import OF_LINK, regressor
 from linksweep.base.checked_number import checked_number
 from linksweep.base.validate import Rule, name_problems, quote, refuse
+from linksweep.engine.threads import limits_threads
 from linksweep.results.compute import by_name, require
 from linksweep.results.sweep import sweep
 from linksweep.scene.designs.selection import design_sizes
@@ -65,6 +66,7 @@ class Aim(NamedTuple):
         return float(np.sqrt(squares.max() if self.word == "peak" else (squares * self.share).sum()))
 
 
+@limits_threads
 def best_counterweights(
     scene: Scene,
     minimize: Mapping[str, float],
@@ -129,7 +131,7 @@ def best_counterweights(
     refuse([p for link in radii for p in name_problems("radius", link, carriers)])
     bounds = dict.fromkeys(radii, np.inf) if most is None else by_link("most", most, list(radii), MOST)
     spokes = {link: _spokes(float(r)) for link, r in radii.items()}
-    aims = _aims(scene, sizes, list(spokes), theta2, threads)
+    aims = _aims(scene, sizes, list(spokes), theta2)
     masses = _best(aims, list(spokes.values()), np.array([float(bounds[link]) for link in spokes]))
     parts = masses.reshape(len(spokes), DIRECTIONS)
     return [_as_one(link, part, spokes[link]) for link, part in zip(spokes, parts, strict=True)]
@@ -152,13 +154,11 @@ def _spokes(radius: float) -> Array:
     return np.stack([ones, radius * np.cos(angles), radius * np.sin(angles), radius * radius * ones])
 
 
-def _aims(
-    scene: Scene, sizes: Mapping[tuple[str, str], float], links: list[str], theta2: int, threads: int | None
-) -> list[Aim]:
+def _aims(scene: Scene, sizes: Mapping[tuple[str, str], float], links: list[str], theta2: int) -> list[Aim]:
     components = {name: scene.table.quantity[name].components for name, _ in sizes}
     names = [name for pair in components.values() for name in pair]
-    coefficients = regressor(scene, names, theta2=theta2, threads=threads)
-    cycle = sweep(scene, theta2, of=names, threads=threads)
+    coefficients = regressor(scene, names, theta2=theta2)
+    cycle = sweep(scene, theta2, of=names)
     labels = [f"{link}.{word}" for link in links for word in OF_LINK]
     ok = np.broadcast_to(cycle["status"].values == 0, cycle.sizes["theta2"])
     share = _over_angles(1.0 / abs(cycle.get("omega2", xr.DataArray(1.0))), cycle)[ok]

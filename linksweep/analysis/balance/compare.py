@@ -10,6 +10,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.base.validate import refuse
+from linksweep.engine.threads import limits_threads
 from linksweep.results.compute import quantity_problems, requested, require_scene
 from linksweep.results.dataset import joined, origin_attributes
 from linksweep.results.over_time import mean_over_time
@@ -23,6 +24,7 @@ SIZES = {
 }
 
 
+@limits_threads
 def compare(before: Scene, after: Scene, *, of: Any, theta2: int = 720, threads: int | None = None) -> xr.Dataset:
     """Compare sizes of quantities of two scenes, as before and after balancing.
 
@@ -64,7 +66,7 @@ def compare(before: Scene, after: Scene, *, of: Any, theta2: int = 720, threads:
     require_scene(after)
     sizes = sizes_named("of", before, requested("of", of, before))
     outputs = [*(name for name, _ in sizes), before.mechanism.pace]
-    sides = [_sizes(scene, sweep(scene, theta2, of=outputs, threads=threads), sizes) for scene in (before, after)]
+    sides = [_sizes(scene, sweep(scene, theta2, of=outputs), sizes) for scene in (before, after)]
     table = {name: joined([side[name] for side in sides], "balance", ("before", "after")) for name in sides[0]}
     quantity = before.table.quantity
     for name, word in sizes:

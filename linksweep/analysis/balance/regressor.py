@@ -21,6 +21,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.base.validate import Number, refuse
+from linksweep.engine.threads import limits_threads
 from linksweep.mechanisms import Mechanism
 from linksweep.mechanisms.balance import MassDistribution
 from linksweep.results.compute import quantity_problems, requested, require
@@ -34,6 +35,7 @@ UNITS = {"m": "kg", "mx": "kg m", "my": "kg m", "J": "kg m^2"}
 OF_LINK = tuple(UNITS)
 
 
+@limits_threads
 def regressor(scene: Scene, of: Iterable[str], *, theta2: Any = 720, threads: int | None = None) -> xr.Dataset:
     """Compute the coefficients of the links' mass distributions in forces and torques.
 
@@ -81,8 +83,8 @@ def regressor(scene: Scene, of: Iterable[str], *, theta2: Any = 720, threads: in
     angles = grid.angles  # of the loads' whole cycle
     values = _values(mechanism)
     probes = _with_masses(mechanism, list(values))
-    alone = sweep(replace(scene, mechanism=probes, loads=()), angles, of=names, threads=threads)
-    massless = sweep(replace(scene, mechanism=_with_masses(mechanism, [])), angles, of=names, threads=threads)
+    alone = sweep(replace(scene, mechanism=probes, loads=()), angles, of=names)
+    massless = sweep(replace(scene, mechanism=_with_masses(mechanism, [])), angles, of=names)
     known = np.stack([np.broadcast_to(row, len(values)) for row in _values(probes).values()], axis=-1)
     inverse = xr.DataArray(np.linalg.inv(known), {"parameter": list(values)}, ("parameter", PROBE))
     table = {"value": joined(values.values(), "parameter", values).transpose(..., "parameter")}

@@ -29,6 +29,7 @@ from linksweep.base.degrees import cos_sin
 from linksweep.base.fields import POLAR_POINT
 from linksweep.base.validate import Rule, choice_problems, refuse
 from linksweep.engine.run import Field
+from linksweep.engine.threads import limits_threads
 from linksweep.mechanisms.capabilities import offers
 from linksweep.physics.algebra import planar
 from linksweep.results.check import evaluated
@@ -51,6 +52,7 @@ CURVE = {
 }
 
 
+@limits_threads
 def geometry(
     scene: Scene, of: str | Iterable[str] | None = None, *, dwell: float = 0.01, threads: int | None = None
 ) -> xr.Dataset:
@@ -115,7 +117,7 @@ def geometry(
     for name in [] if in_closed_form else _positions(bare, of):
         variables |= _travelled(bare, name, dwell)
     for name in [name for name in bare.table.quantity if name.startswith(ANGLE)]:
-        angles = peaks(bare, of=[name], threads=threads).drop_vars(["status", f"{name}_peak"])
+        angles = peaks(bare, of=[name]).drop_vars(["status", f"{name}_peak"])
         changes = angles[f"{name}_max"] - angles[f"{name}_min"] > STEADY
         variables |= {
             str(key): (value.where(changes) if str(key).endswith("_at") else value).variable
@@ -156,6 +158,7 @@ def _travelled(scene: Scene, name: str, dwell: float) -> dict[str, xr.Variable]:
     return {f"{name}_{word}": variable(*part[:2], f"{part[2]}: {of}", order) for word, part in parts.items()}
 
 
+@limits_threads
 def coupler_curve(
     scene: Scene, at: tuple[Any, Any], *, theta2: Any = 720, link: str | None = None, threads: int | None = None
 ) -> xr.Dataset:
@@ -198,9 +201,9 @@ def coupler_curve(
     role = _floating(scene) if link is None else link
     refuse(choice_problems("link", role, bodies))
     at = checked_pair("at", at, POLAR_POINT)
-    body, cycle = bodies[role], sweep(scene, theta2, of=["status"], threads=threads)
+    body, cycle = bodies[role], sweep(scene, theta2, of=["status"])
     k, of_pin = body.number, (*body.pin_position, *body.pin_velocity, *body.pin_acceleration)
-    motion = _numbers(scene, theta2, (*of_pin, f"r{k}x", f"r{k}y", f"omega{k}", f"alpha{k}"), threads)
+    motion = _numbers(scene, theta2, (*of_pin, f"r{k}x", f"r{k}y", f"omega{k}", f"alpha{k}"))
     x, y, vx, vy, ax, ay, *line, omega, alpha = motion
     length = scene.mechanism.parameters()[f"{role}_length"]
     cos, sin = cos_sin(at[1])
@@ -225,12 +228,12 @@ def _floating(scene: Scene) -> str:
     return next((body.role for body in parts if not body.on_ground), scene.mechanism.bodies[-1].role)
 
 
-def _numbers(scene: Scene, theta2: Any, sources: tuple[Any, ...], threads: int | None) -> list[Any]:
+def _numbers(scene: Scene, theta2: Any, sources: tuple[Any, ...]) -> list[Any]:
     """Return quantities of the table by name, internal ones too; a number is returned as it is."""
     grid = scene.grid(theta2)
     sampled = scene.at(grid)
     names = tuple(source for source in sources if isinstance(source, str))
     order = (*sampled.inputs.sizes, grid.dim)
-    fields = compute(sampled, grid, tuple(dict.fromkeys(names)), threads)
+    fields = compute(sampled, grid, tuple(dict.fromkeys(names)))
     arrays = {name: xr.DataArray(variable(field, "", "", order)) for name, field in fields.items()}
     return [arrays[source] if isinstance(source, str) else source for source in sources]

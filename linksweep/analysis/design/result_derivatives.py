@@ -84,37 +84,35 @@ class Derived(NamedTuple):
         )
 
 
-def derived(
-    scene: Scene, name: str, to: tuple[str, ...], threads: int | None = None, conditions: Conditions = USUAL
-) -> Derived:
+def derived(scene: Scene, name: str, to: tuple[str, ...], conditions: Conditions = USUAL) -> Derived:
     """Return a result by its name, with its derivatives to parameters."""
     scene = with_sections(scene, name)
     if name in OUTPUT or name.endswith(TRAVEL):
-        return _travel(scene, name, to, threads)
+        return _travel(scene, name, to)
     if name.endswith(TIME_RATIO):
-        return _time_ratio(scene, name, to, threads)
+        return _time_ratio(scene, name, to)
     if name == FLYWHEEL:
-        return _flywheel(scene, to, threads, conditions.fluctuation)
+        return _flywheel(scene, to, conditions.fluctuation)
     if name in life_names(scene):
-        return _life(scene, name, to, threads, conditions)
+        return _life(scene, name, to, conditions)
     stem, end = split(scene, name)
     if end in ("mean", "rms"):
-        return _mean(scene, stem, end, to, threads)
-    return _peak(scene, stem, end, to, threads)
+        return _mean(scene, stem, end, to)
+    return _peak(scene, stem, end, to)
 
 
-def result_value(scene: Scene, name: str, threads: int | None = None, conditions: Conditions = USUAL) -> xr.DataArray:
+def result_value(scene: Scene, name: str, conditions: Conditions = USUAL) -> xr.DataArray:
     """Return a result by its name."""
     if name in OUTPUT or name.endswith((TRAVEL, TIME_RATIO)):
-        return _motion(scene, name, threads)[1][name]
+        return _motion(scene, name)[1][name]
     if name == FLYWHEEL:
-        return flywheel(scene, fluctuation=conditions.fluctuation, threads=threads).flywheel_inertia
+        return flywheel(scene, fluctuation=conditions.fluctuation).flywheel_inertia
     if name in life_names(scene):
         word, pin = life_of(name)
-        return life(scene, pin, conditions.bearing(pin), threads)[word]
+        return life(scene, pin, conditions.bearing(pin))[word]
     stem, end = split(scene, name)
     of = f"{stem}_{end}" if end in ("mean", "rms") else stem
-    return peaks(scene, of=[of], threads=threads)[f"{stem}_{end}"]
+    return peaks(scene, of=[of])[f"{stem}_{end}"]
 
 
 def result_names(scene: Scene) -> list[str]:
@@ -169,9 +167,9 @@ def _plain(number: Any) -> np.ndarray:
 # ------------------------------------------------------------------------------------------------------- extremes
 
 
-def _peak(scene: Scene, stem: str, end: str, to: tuple[str, ...], threads: int | None) -> Derived:
+def _peak(scene: Scene, stem: str, end: str, to: tuple[str, ...]) -> Derived:
     """Return a peak, a largest or a least value."""
-    ds, quantity = peaks(scene, of=[stem], threads=threads), scene.table.quantity[stem]
+    ds, quantity = peaks(scene, of=[stem]), scene.table.quantity[stem]
     value = ds[f"{stem}_{end}"]
     if quantity.squared:
         square = _extreme(scene, quantity.squared, ds[f"{stem}_peak_at"], value * value, to, True)
@@ -229,9 +227,9 @@ def _extreme(
     return Derived(value, slopes, array(status), corners)
 
 
-def _travel(scene: Scene, name: str, to: tuple[str, ...], threads: int | None) -> Derived:
+def _travel(scene: Scene, name: str, to: tuple[str, ...]) -> Derived:
     """Return a stroke or swing, or the travel of a position."""
-    alone, motion = _motion(scene, name, threads)
+    alone, motion = _motion(scene, name)
     position, value = _position(scene, name), motion[name]
     own = tuple(path for path in to if path in alone.numbers and path not in MOTION)
     ends = _ends_of_way(motion, position)
@@ -244,9 +242,9 @@ def _travel(scene: Scene, name: str, to: tuple[str, ...], threads: int | None) -
     return Derived(value, slopes, xr.where(np.isfinite(value), OK, NONE))
 
 
-def _time_ratio(scene: Scene, name: str, to: tuple[str, ...], threads: int | None) -> Derived:
+def _time_ratio(scene: Scene, name: str, to: tuple[str, ...]) -> Derived:
     """Return the time ratio of an output, or of a position."""
-    alone, motion = _motion(scene, name, threads)
+    alone, motion = _motion(scene, name)
     position, value = _position(scene, name), motion[name]
     own = tuple(path for path in to if path in alone.numbers and path not in MOTION)
     known, even = time_ratio_slopes(alone, position, _ends_of_way(motion, position), own)
@@ -270,11 +268,11 @@ def _ends_of_way(motion: xr.Dataset, position: str) -> tuple[xr.DataArray, xr.Da
     return ends.isel({dim: 0}, drop=True), ends.isel({dim: 1}, drop=True)
 
 
-def _motion(scene: Scene, name: str, threads: int | None) -> tuple[Scene, xr.Dataset]:
+def _motion(scene: Scene, name: str) -> tuple[Scene, xr.Dataset]:
     """Return the mechanism alone, and the geometry of its motion with a stroke, a swing, a travel or a time ratio."""
     alone = replace(scene, omega2=1.0, alpha2=0.0, loads=())
     of = None if name in (*OUTPUT, TIME_RATIO) else [_position(scene, name)]
-    return alone, geometry(alone, of, threads=threads)
+    return alone, geometry(alone, of)
 
 
 def _turning_point(
@@ -289,14 +287,14 @@ def _turning_point(
 # ---------------------------------------------------------------------------------------------------------- means
 
 
-def _mean(scene: Scene, stem: str, end: str, to: tuple[str, ...], threads: int | None) -> Derived:
+def _mean(scene: Scene, stem: str, end: str, to: tuple[str, ...]) -> Derived:
     """Return a mean or root mean square over time."""
     name = f"{stem}_{end}"
-    ds, quantity = peaks(scene, of=[name], threads=threads), scene.table.quantity[stem]
+    ds, quantity = peaks(scene, of=[name]), scene.table.quantity[stem]
     value = ds[name]
     squared = end == "rms" and quantity.squared
     of, power = (quantity.squared, 1) if squared else (stem, 2 if end == "rms" else 1)
-    slopes = mean_derivatives(scene, str(of), power, to, threads)
+    slopes = mean_derivatives(scene, str(of), power, to)
     if end == "rms":
         slopes = {path: slope / (2.0 * value) for path, slope in slopes.items()}
     jammed = jams(scene)  # a mean is that of the other angles, and the ends of a jam move
@@ -304,17 +302,17 @@ def _mean(scene: Scene, stem: str, end: str, to: tuple[str, ...], threads: int |
     return Derived(value, slopes, xr.where(np.isfinite(value), xr.where(unknown, JUMP, OK), NONE))
 
 
-def _flywheel(scene: Scene, to: tuple[str, ...], threads: int | None, fluctuation: float) -> Derived:
+def _flywheel(scene: Scene, to: tuple[str, ...], fluctuation: float) -> Derived:
     """Return the flywheel for a coefficient of fluctuation."""
-    value, slopes = flywheel_slopes(scene, to, fluctuation=fluctuation, threads=threads)
+    value, slopes = flywheel_slopes(scene, to, fluctuation=fluctuation)
     unknown = JUMP if moving_unknown(scene, to) else OK
     return Derived(value, slopes, xr.where(np.isfinite(value), unknown, NONE))
 
 
-def _life(scene: Scene, name: str, to: tuple[str, ...], threads: int | None, conditions: Conditions) -> Derived:
+def _life(scene: Scene, name: str, to: tuple[str, ...], conditions: Conditions) -> Derived:
     """Return the equivalent load, or the life, of the bearing in a pin."""
     word, pin = life_of(name)
-    results, slopes = life_derivatives(scene, word, pin, conditions.bearing(pin), to, threads)
+    results, slopes = life_derivatives(scene, word, pin, conditions.bearing(pin), to)
     units, text = TEXTS[word]
     value = results[word].assign_attrs(units=units, long_name=f"{text}, pin {pin}")
     status = STATUS_OF_LIFE[results["life_status"].astype(int)]

@@ -12,8 +12,9 @@ from numpy.typing import ArrayLike
 from linksweep.analysis.design.conditions import checked_conditions
 from linksweep.analysis.design.result_derivatives import Derived, derived, result_problems, whole_name, with_zeros
 from linksweep.analysis.pins.bearing import Bearing
-from linksweep.base.validate import UNITS, count_problems, name_problems, quote, refuse
+from linksweep.base.validate import UNITS, name_problems, quote, refuse
 from linksweep.engine.run import Field
+from linksweep.engine.threads import limits_threads
 from linksweep.results.compute import angles_of, quantity_problems, requested, require_scene
 from linksweep.results.dataset import design_coordinates, flags, index_coordinate, provenance, status_attributes
 from linksweep.results.derivatives.of_peaks import MEANINGS, OK
@@ -28,6 +29,7 @@ PARAMETER = "parameter"
 """Dimension of the parameters of a result."""
 
 
+@limits_threads
 def sensitivities(
     scene: Scene,
     of: str | Iterable[str] | None = None,
@@ -99,18 +101,17 @@ def sensitivities(
     -0.53
     """
     require_scene(scene)
-    refuse(count_problems("threads", threads))
     angles = angles_of(scene, theta2=theta2, theta=theta)
     scene = with_sections(in_memory(scene), of)
     paths = parameters_of(scene, to)
     if angles is not None:
-        return _of_samples(scene, angles, of, paths, threads)
+        return _of_samples(scene, angles, of, paths)
     names = list(scene.mechanism.peak_quantities(scene.drive)) if of is None else requested("of", of, scene)
     conditions = checked_conditions(scene, fluctuation, pins)
     refuse([problem for name in names for problem in result_problems(scene, "of", name, conditions)])
     variables: dict[str, Any] = {}
     for name in dict.fromkeys(whole_name(scene, name) for name in names):
-        variables |= _variables(scene, name, derived(scene, name, paths, threads, conditions).only_ok())
+        variables |= _variables(scene, name, derived(scene, name, paths, conditions).only_ok())
     command = f"linksweep.sensitivities(scene, of={names}, to={list(paths)})"
     return labelled(scene, variables, paths, command)
 
@@ -174,13 +175,13 @@ def labelled(scene: Scene, variables: Mapping[str, Any], paths: tuple[str, ...],
     return xr.Dataset(variables, coordinates | labels, provenance(scene, command, coordinates))
 
 
-def _of_samples(scene: Scene, angles: Any, of: Any, paths: tuple[str, ...], threads: int | None) -> xr.Dataset:
+def _of_samples(scene: Scene, angles: Any, of: Any, paths: tuple[str, ...]) -> xr.Dataset:
     """Return the derivatives of quantities at crank angles."""
     names = list(scene.mechanism.peak_quantities(scene.drive)) if of is None else requested("of", of, scene)
     known = [name for name in scene.table.quantity if name != "cond"]
     refuse([problem for name in names for problem in quantity_problems("of", name, known, scene)])
     grid = scene.grid(angles)
-    samples = sample_derivatives(scene, grid, tuple(names), paths, threads)
+    samples = sample_derivatives(scene, grid, tuple(names), paths)
     index = index_coordinate(scene, grid)
 
     def array(field: Field) -> xr.DataArray:

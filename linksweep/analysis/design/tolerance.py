@@ -30,6 +30,7 @@ from linksweep.analysis.design.sensitivities import labelled, stacked
 from linksweep.analysis.pins.bearing import Bearing
 from linksweep.base.units import quantity
 from linksweep.base.validate import count_problems, quote, refuse
+from linksweep.engine.threads import limits_threads
 from linksweep.results.compute import requested, require_scene
 from linksweep.results.dataset import flags
 from linksweep.results.derivatives.of_peaks import MEANINGS
@@ -57,6 +58,7 @@ class Spread(NamedTuple):
     upper: float
 
 
+@limits_threads
 def tolerance(
     scene: Scene,
     tolerances: Mapping[str, Choice | str],
@@ -125,16 +127,16 @@ def tolerance(
     names = requested("of", of, scene)
     conditions = checked_conditions(scene, fluctuation, pins)
     problems = [problem for name in names for problem in result_problems(scene, "of", name, conditions)]
-    refuse([*problems, *([] if n == 0 else count_problems("n", n)), *count_problems("threads", threads)])
+    refuse([*problems, *([] if n == 0 else count_problems("n", n))])
     paths = tuple(choices)
     spreads = {path: _spread(choice, free(scene)[path][1]) for path, choice in choices.items()}
     variables: dict[str, Any] = {}
     drawn = sample(scene, choices, n=n, seed=seed, dim=DRAWN) if n else None
     for name in dict.fromkeys(whole_name(scene, name) for name in names):
-        result = derived(scene, name, paths, threads, conditions).only_ok()
+        result = derived(scene, name, paths, conditions).only_ok()
         units, text = (str(result.value.attrs.get(word, "")) for word in ("units", "long_name"))
         linear = _linear(name, result.slopes, spreads, result.value, text)
-        exact = {} if drawn is None else _drawn(name, result_value(drawn, name, threads, conditions), text)
+        exact = {} if drawn is None else _drawn(name, result_value(drawn, name, conditions), text)
         for key, (values, words) in (linear | exact).items():
             unit = "1" if key.endswith("_share") else units
             variables[key] = values.reset_coords(drop=True).assign_attrs(units=unit, long_name=words)

@@ -30,7 +30,7 @@ from linksweep.analysis.drive.motors.motor import AnyMotor, motor_problems
 from linksweep.base.checked_number import checked_number
 from linksweep.base.fields import numbers
 from linksweep.base.frozen import bare, with_arrays
-from linksweep.base.validate import Number, Rule, count_problems, is_array, quote, refuse
+from linksweep.base.validate import Number, Rule, is_array, quote, refuse
 from linksweep.chains.between_links import pair_of
 from linksweep.engine.run import Field, Grid, evaluate
 from linksweep.engine.trace.derivatives import derivative_of
@@ -68,7 +68,6 @@ class DriveTrain:
     motor, ratio, flywheel : motor, its speed per that of the crank, inertia of the flywheel on the crank's shaft
     efficiency : efficiency of the gear
     direction : 1 for a crank that turns counter-clockwise, -1 for clockwise
-    threads : largest number of threads; None for all cores
     plans : plans of the torque that have been made, by the forms of their inputs: one for all angles and blocks
     """
 
@@ -78,7 +77,6 @@ class DriveTrain:
     flywheel: Number
     efficiency: Number
     direction: float
-    threads: int | None = None
     plans: dict[InputForms, Plan] = field(default_factory=dict)
 
     @cached_property
@@ -207,7 +205,7 @@ class TrainAtAngles:
         dims = (*train.dims, self.grid.dim)
         motion = {name: Field(dims, sign * value) for name, value in zip(MOTION, (speed, acceleration), strict=True)}
         inputs = self._sampled.inputs
-        fields = evaluate(self._plan, {**inputs.fields, **motion}, self.grid, inputs.sizes, train.threads)
+        fields = evaluate(self._plan, {**inputs.fields, **motion}, self.grid, inputs.sizes)
         torque, to_speed, to_acceleration = (
             np.broadcast_to(aligned(fields[name], dims), speed.shape) for name in train.names
         )
@@ -251,9 +249,7 @@ def lost_part(passed: Array, efficiency: Array) -> Array:
     return np.where(passed > 0.0, 1.0 - efficiency, 1.0 - 1.0 / efficiency)
 
 
-def drive_train(
-    scene: Scene, motor: AnyMotor, ratio: Any, flywheel: Any, efficiency: Any = 1.0, threads: int | None = None
-) -> DriveTrain:
+def drive_train(scene: Scene, motor: AnyMotor, ratio: Any, flywheel: Any, efficiency: Any = 1.0) -> DriveTrain:
     """Return a scene on its motor.
 
     Raises
@@ -263,14 +259,14 @@ def drive_train(
         an inertia or an efficiency that is out of bounds.
     """
     require(scene, "drives")
-    refuse(_problems(scene, motor) + count_problems("threads", threads))
+    refuse(_problems(scene, motor))
     ratio, flywheel = checked_number("ratio", ratio, RATIO), checked_number("flywheel", flywheel, INERTIA)
     efficiency = checked_number("efficiency", efficiency, EFFICIENCY)
     direction = 1.0 if np.all(np.asarray(scene.at(scene.grid(1)).omega2) > 0.0) else -1.0
     designs = sum(0.0 * number for _, number, _ in numbers(motor) if is_array(number))
     designs = designs + 0.0 * flywheel + 0.0 * (efficiency - 1.0)
     top = direction * (motor.top_speed / ratio) + designs
-    return DriveTrain(replace(scene, omega2=top, alpha2=0.0), motor, ratio, flywheel, efficiency, direction, threads)
+    return DriveTrain(replace(scene, omega2=top, alpha2=0.0), motor, ratio, flywheel, efficiency, direction)
 
 
 def _problems(scene: Scene, motor: Any) -> list[str]:

@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.base.validate import refuse
+from linksweep.engine.threads import limits_threads
 from linksweep.results.compute import require
 from linksweep.results.cylinders.multi_cylinder import MultiCylinder, one_cylinder
 from linksweep.results.dataset import with_units
@@ -38,6 +39,7 @@ WORK: Results = {
 LOSS: Results = {"work_of_friction": ("friction_power_mean", "work of friction in a cycle, never positive")}
 
 
+@limits_threads
 def duty(scene: Scene | MultiCylinder, *, threads: int | None = None) -> xr.Dataset:
     """Compute torque, power and work of the drive over a cycle, by quadrature over the continuous revolution.
 
@@ -90,8 +92,8 @@ def duty(scene: Scene | MultiCylinder, *, threads: int | None = None) -> xr.Data
     entries = {name: (source.format(drive=drive), words) for name, (source, words) in {**OF_DRIVE, **work}.items()}
     sources = [source for source, _ in entries.values()]
     names = [name if name.endswith(("_mean", "_rms")) else name.rpartition("_")[0] for name in sources]
-    worst = peaks(scene, of=list(dict.fromkeys(names)), threads=threads)
-    time, whole = xr.DataArray(cycle_time(one, threads)), worst["status"] == 0
+    worst = peaks(scene, of=list(dict.fromkeys(names)))
+    time, whole = xr.DataArray(cycle_time(one)), worst["status"] == 0
     time = time if bool(whole.all()) else time.where(whole)
     results = {
         name: (worst[source] * time, "J", words) if name in work else (worst[source], worst[source].units, words)

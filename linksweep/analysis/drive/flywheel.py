@@ -28,6 +28,7 @@ from linksweep.analysis.drive.piecewise import piecewise
 from linksweep.analysis.drive.wittenbauer import NAMES, Turning, ahead
 from linksweep.base.checked_number import checked_number
 from linksweep.base.validate import Number, Rule, quote, refuse
+from linksweep.engine.threads import limits_threads
 from linksweep.engine.trace.derivatives import derivative_of
 from linksweep.results.compute import require
 from linksweep.results.cylinders.multi_cylinder import MultiCylinder, one_cylinder
@@ -61,6 +62,7 @@ OF_TORQUE = ("drive_torque", "energy_fluctuation")
 """Results that do not depend on the flywheel."""
 
 
+@limits_threads
 def flywheel(
     scene: Scene | MultiCylinder,
     *,
@@ -128,11 +130,11 @@ def flywheel(
     else:
         inertia = checked_number("inertia", inertia, INERTIA)
     steady = _at_constant_speed(scene)
-    cycle, index = _cycle(steady, theta2, threads), one_cylinder(scene).mechanism.index
+    cycle, index = _cycle(steady, theta2), one_cylinder(scene).mechanism.index
     sum_of_both = cycle[NAMES[0]] + cycle[NAMES[1]] + 0.0 * cycle[index]
     known = sum_of_both.sum(index, skipna=False) + 0.0 * one_cylinder(scene).omega2  # NaN where it does not turn fully
     number = fluctuation if inertia is None else inertia
-    arrays = _arrays(steady, known, cycle[index], number, inertia is None, threads)
+    arrays = _arrays(steady, known, cycle[index], number, inertia is None)
     results = {name: (arrays[name], *text) for name, text in TEXTS.items()}
     return cycle[["status"]].assign(with_units(results)).assign_attrs(command="linksweep.flywheel(scene, ...)")
 
@@ -150,22 +152,17 @@ def _at_constant_speed(scene: Scene | MultiCylinder) -> Scene | MultiCylinder:
     return replace(scene, alpha2=0.0)
 
 
-def _cycle(steady: Scene | MultiCylinder, theta2: int, threads: int | None) -> xr.Dataset:
+def _cycle(steady: Scene | MultiCylinder, theta2: int) -> xr.Dataset:
     if isinstance(steady, MultiCylinder):
-        return steady.sweep(theta2, of=NAMES[:2], threads=threads)
-    return sweep(steady, theta2, of=NAMES[:2], threads=threads)
+        return steady.sweep(theta2, of=NAMES[:2])
+    return sweep(steady, theta2, of=NAMES[:2])
 
 
 # -------------------------------------------------------------------------------------------- arrays over the designs
 
 
 def _arrays(
-    steady: Scene | MultiCylinder,
-    known: xr.DataArray,
-    angles: xr.DataArray,
-    number: Any,
-    sized: bool,
-    threads: int | None,
+    steady: Scene | MultiCylinder, known: xr.DataArray, angles: xr.DataArray, number: Any, sized: bool
 ) -> dict[str, xr.DataArray]:
     """Return all results by name, NaN where a design is not `known`, for a number: the fluctuation (`sized`), or the
     inertia."""
@@ -177,7 +174,7 @@ def _arrays(
     values = {name: np.full((*numbers.shape, angles.size if name == "speed" else 1), np.nan) for name in TEXTS}
     for _, group in assembled_groups(steady, NAMES, (EVERYWHERE,)):
         at = np.ravel_multi_index([group.places[dim] for dim in own], shape) if own else np.zeros(1, dtype=int)
-        turning = Turning.of(group.some(np.arange(len(at))), threads)
+        turning = Turning.of(group.some(np.arange(len(at))))
         for k in range(numbers.shape[1]):
             for name, row in _results(turning, numbers[at, k], sized, angles.values).items():
                 values[name][at, k] = row
@@ -242,20 +239,20 @@ class MovingJump(NamedTuple):
 
 
 def flywheel_slopes(
-    scene: Scene, to: tuple[str, ...], *, fluctuation: float, threads: int | None = None
+    scene: Scene, to: tuple[str, ...], *, fluctuation: float
 ) -> tuple[xr.DataArray, dict[str, xr.DataArray]]:
     """Return the inertia of the flywheel [kg m²] for a coefficient of fluctuation, and its derivatives to parameters.
 
     Both extremes of the module's equation stay at their angles (the envelope theorem); the work of a torque is linear
     in it. A jump that moves by dθ* adds (T(θ*−) − T(θ*+))·dθ* to the work, and takes an extreme at it along.
     """
-    size = flywheel(scene, fluctuation=fluctuation, threads=threads).flywheel_inertia.reset_coords(drop=True)
+    size = flywheel(scene, fluctuation=fluctuation).flywheel_inertia.reset_coords(drop=True)
     paths = tuple(path for path in to if path != "alpha2")
     own = differentiated(replace(scene, alpha2=0.0), NAMES[:2], paths)
     names = tuple(derivative_of(name, path) for path in paths for name in NAMES[:2])
     fields = {path: empty_over_all(own, (*NAMES, *names)) for path in paths}
     for _, group in assembled_groups(own, (*NAMES, *names), (EVERYWHERE,)):
-        slopes = _slopes(group, own, names, 0.5 * fluctuation, threads)
+        slopes = _slopes(group, own, names, 0.5 * fluctuation)
         for path, field in fields.items():
             field.values[tuple(group.places[dim] for dim in field.dims)] = (
                 slopes[path] if field.dims else slopes[path][0]
@@ -265,9 +262,9 @@ def flywheel_slopes(
     return size, {path: slope.where(size > 0.0, 0.0).where(np.isfinite(size)) for path, slope in every.items()}
 
 
-def _slopes(group: Any, own: Differentiated, names: tuple[str, ...], s: float, threads: int | None) -> dict[str, Array]:
+def _slopes(group: Any, own: Differentiated, names: tuple[str, ...], s: float) -> dict[str, Array]:
     """Return the derivatives of the inertia of each design by parameter; `names` are those of torque and inertia."""
-    turning, changes, jumps = Turning.of(group, threads), piecewise(group, names, threads), _moving_jumps(group, own)
+    turning, changes, jumps = Turning.of(group), piecewise(group, names), _moving_jumps(group, own)
     square, tangents = turning.omega2**2, turning.tangents(np.full(len(group.designs), s))
     size = (tangents.high - tangents.low) / (2.0 * s * square)
     ends = (1.0, tangents.at_high, -s * (1.0 + 0.5 * s)), (-1.0, tangents.at_low, s * (1.0 - 0.5 * s))

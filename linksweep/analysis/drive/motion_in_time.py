@@ -63,7 +63,6 @@ class Crank:
     drive: Drive
     direction: Array
     start: Array
-    threads: int | None = None
 
     def at(self, rows: Array, angle: Array) -> Pairs:
         """Return pairs of a design and φ [rad]; beyond a failure, where φ is no number, at the start."""
@@ -73,7 +72,7 @@ class Crank:
         """Return values (names, pairs) of quantities at w [rad/s] and dw/dt [rad/s²]."""
         way = self.direction[pairs.designs]
         motion = {"omega2": way * np.maximum(speed, AT_REST), "alpha2": way * rise}
-        return pairs.values(names, self.threads, motion)
+        return pairs.values(names, motion)
 
     def angles(self, rows: Array, angle: Array) -> Array:
         """Return crank angles [degree] at φ [rad]."""

@@ -16,6 +16,7 @@ from linksweep.base.frozen import with_arrays
 from linksweep.base.validate import Number, refuse
 from linksweep.chains.between_links import pair_of
 from linksweep.engine.quantity import opposite_of
+from linksweep.engine.threads import limits_threads
 from linksweep.results.compute import names_unless_jammed, require
 from linksweep.results.dataset import with_units
 from linksweep.results.over_time import mean_over_time
@@ -59,6 +60,7 @@ class GearedMotor(NamedTuple):
         ))  # fmt: skip
 
 
+@limits_threads
 def motor_load(
     scene: Scene,
     motor: AnyMotor,
@@ -123,13 +125,13 @@ def motor_load(
     torque = scene.mechanism.drives[scene.drive]
     _, link = pair_of(torque) or (1, 2)
     omega, alpha = f"omega{link}", f"alpha{link}"
-    cycle = sweep(scene, theta2, of=[torque, omega, alpha], threads=threads)
+    cycle = sweep(scene, theta2, of=[torque, omega, alpha])
     index = scene.mechanism.index
     drive, T = GearedMotor(motor, ratio, efficiency), cycle[torque].broadcast_like(cycle[index])
     speed, needed = ratio * cycle[omega], drive.torque(T, cycle[omega], cycle[alpha])
     available = drive.available(cycle[omega])
     margin = available - abs(needed)
-    least, at = _least_margin(scene, (torque, omega, alpha), drive, margin, _part(theta2, scene), threads)
+    least, at = _least_margin(scene, (torque, omega, alpha), drive, margin, _part(theta2, scene))
     results = {
         "motor_speed": (speed, "rad/s", "angular velocity of the motor"),
         "motor_torque": (needed, "N m", "torque of the motor, in the direction of the torque on the driven link"),
@@ -170,10 +172,10 @@ class Loaded(NamedTuple):
     def scene(self) -> Scene:
         return self.group.scene
 
-    def values(self, names: tuple[str, ...], rows: Array, angles: Array, threads: int | None = None) -> Array:
+    def values(self, names: tuple[str, ...], rows: Array, angles: Array) -> Array:
         """Return the torque that is lacking, negative where there is a margin (1, pairs), at pairs of a row and an
         angle [degree]."""
-        values = self.group.values(self.names, rows // self.motors, angles, threads)
+        values = self.group.values(self.names, rows // self.motors, angles)
         torque, omega, alpha = (xr.DataArray(row, dims=PAIR) for row in values)
         drives = self.drives.some({ROW: xr.DataArray(rows, dims=PAIR)})
         lacking = abs(drives.torque(torque, omega, alpha)) - drives.available(omega)
@@ -193,12 +195,7 @@ def _part(theta2: Any, scene: Scene) -> Part | None:
 
 
 def _least_margin(
-    scene: Scene,
-    names: tuple[str, ...],
-    drive: GearedMotor,
-    margin: xr.DataArray,
-    part: Part | None,
-    threads: int | None,
+    scene: Scene, names: tuple[str, ...], drive: GearedMotor, margin: xr.DataArray, part: Part | None
 ) -> tuple[xr.DataArray, xr.DataArray]:
     """Return the least margin of each design, and its angle [degree], by the search for peaks."""
     index = scene.mechanism.index
@@ -214,12 +211,12 @@ def _least_margin(
         for paths in (loaded.along(paths_of_group(group)) for paths_of_group in searches):
             if len(paths.row):
                 none = np.full((len(paths.row), 1), -np.inf)
-                lacking, angle, *_ = (numbers[:, 0] for numbers in highest(loaded, ("lacking",), paths, none, threads))
+                lacking, angle, *_ = (numbers[:, 0] for numbers in highest(loaded, ("lacking",), paths, none))
                 order = np.argsort(lacking)  # the highest of a design is written last
                 order = order[(lacking[order] > -np.inf) & ~(least[place[paths.row[order]]] <= -lacking[order])]
                 where = place[paths.row[order]]
                 least[where], at[where] = -lacking[order], angle[order]
-        row, angle = _poles(group, names[0], part, threads)
+        row, angle = _poles(group, names[0], part)
         where = place.reshape(-1, loaded.motors)[row]
         least[where], at[where] = -np.inf, angle[:, None]
     if part is not None:
@@ -228,12 +225,12 @@ def _least_margin(
     return designs.copy(data=least.reshape(designs.shape)), designs.copy(data=at.reshape(designs.shape))
 
 
-def _poles(group: Group, torque: str, part: Part | None, threads: int | None) -> tuple[Array, Array]:
+def _poles(group: Group, torque: str, part: Part | None) -> tuple[Array, Array]:
     """Return the row of a design and the angle [degree] of each pole of its torque."""
     signals = torque, opposite_of(torque)
     if not may_have_poles(group.scene, signals):
         return np.empty(0, dtype=int), np.empty(0)
-    row, angle, infinite = poles(group, signals, threads)
+    row, angle, infinite = poles(group, signals)
     there = infinite.any(axis=1)
     if part is not None:
         there &= in_period(angle - part[0], group.scene.period) <= part[1] - part[0]

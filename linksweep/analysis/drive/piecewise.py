@@ -101,14 +101,14 @@ def added(*series: Array) -> Array:
     return np.sum([np.pad(each, ((0, 0), (0, 0), (0, most - each.shape[-1]))) for each in series], axis=0)
 
 
-def piecewise(group: Any, names: tuple[str, ...], threads: int | None = None) -> Piecewise:
+def piecewise(group: Any, names: tuple[str, ...]) -> Piecewise:
     """Return quantities of a group's designs over the cycle: designs whose crank turns fully; NaN where not known."""
     paths, count = turns(group), len(group.designs)
     path, first = np.nonzero(paths.cuts[:, 1:] > paths.cuts[:, :-1])
     pieces = np.stack([paths.cuts[path, first], np.diff(paths.cuts, axis=1)[path, first]])
     done, scale, full = [], np.zeros((len(names), count)), np.bincount(path, minlength=count)
     for halvings in range(HALVINGS + 1):
-        values = _values(group, names, paths.row[path], pieces, threads)
+        values = _values(group, names, paths.row[path], pieces)
         # no matrix product: the order in which it sums, and so the last bit, depends on the number of pieces
         terms = np.stack([(values * weights).sum(axis=-1) for weights in TO_TERMS], axis=-1)
         if not halvings:
@@ -130,11 +130,11 @@ def piecewise(group: Any, names: tuple[str, ...], threads: int | None = None) ->
     return Piecewise(tables[0], tables[1], np.moveaxis(tables[2], 2, 0))
 
 
-def _values(group: Any, names: tuple[str, ...], row: Array, pieces: Array, threads: int | None) -> Array:
+def _values(group: Any, names: tuple[str, ...], row: Array, pieces: Array) -> Array:
     """Return the values (quantity, piece, point) of quantities on pieces."""
     start, width = pieces
     angles = (start[:, None] + 0.5 * (1.0 + POINTS) * width[:, None]).ravel()
-    return group.values(names, np.repeat(row, TERMS), angles, threads).reshape(len(names), len(row), TERMS)
+    return group.values(names, np.repeat(row, TERMS), angles).reshape(len(names), len(row), TERMS)
 
 
 def _noise(wide: Array, tail: Array, path: Array, full: Array, halvings: int) -> Array:

@@ -14,6 +14,7 @@ from linksweep.analysis.drive.motors.direct_current import DCMotor
 from linksweep.analysis.drive.motors.motor import AnyMotor
 from linksweep.analysis.drive.runs import Designs, Names, checked, described, one_part, turned
 from linksweep.base.validate import Number, Rule, quote, refuse
+from linksweep.engine.threads import limits_threads
 from linksweep.engine.time_steps import GIVEN_UP
 from linksweep.results.compute import require
 from linksweep.scene.designs.lazy import in_memory
@@ -25,6 +26,7 @@ NO_MOTOR = DCMotor(stall_torque=1.0, no_load_speed=1.0)
 """A motor without inertia: its power is cut, so that nothing else of it matters."""
 
 
+@limits_threads
 def run_down(
     scene: Scene,
     motor: AnyMotor | None = None,
@@ -103,9 +105,9 @@ def run_down(
     require(scene, "drives")
     scene, until = in_memory(scene), one_part(until, UNTIL)
     refuse([f"until = {quote(until)}: must be less than 1"] if until >= 1.0 else [])
-    start, turns, names = checked(scene, start, turns, of, threads)
+    start, turns, names = checked(scene, start, turns, of)
     train = drive_train(scene, NO_MOTOR if motor is None else motor, ratio, flywheel, efficiency)
-    designs = Designs(scene, train, start, threads)
+    designs = Designs(scene, train, start)
     speed = designs.flat(_speed(scene, start))
     run = Run(designs.crank(powered=False), speed, until * speed, -1.0, turns, speed)
     energy = designs.kinetic_energy(np.zeros(designs.count), speed)

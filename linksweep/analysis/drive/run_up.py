@@ -14,6 +14,7 @@ from linksweep.analysis.drive.motors.motor import AnyMotor
 from linksweep.analysis.drive.operating_point import operating_speed
 from linksweep.analysis.drive.runs import Designs, Names, checked, described, fed, one_part, turned
 from linksweep.base.validate import Number, Rule
+from linksweep.engine.threads import limits_threads
 from linksweep.engine.time_steps import GIVEN_UP
 from linksweep.results.compute import require
 from linksweep.scene.designs.lazy import in_memory
@@ -30,6 +31,7 @@ OUTCOMES = {
 }
 
 
+@limits_threads
 def run_up(
     scene: Scene,
     motor: AnyMotor,
@@ -111,8 +113,8 @@ def run_up(
     """
     require(scene, "drives")
     scene, until = in_memory(scene), one_part(until, UNTIL)
-    start, turns, names = checked(scene, start, turns, of, threads)
-    designs = Designs(scene, drive_train(scene, motor, ratio, flywheel, efficiency), start, threads)
+    start, turns, names = checked(scene, start, turns, of)
+    designs = Designs(scene, drive_train(scene, motor, ratio, flywheel, efficiency), start)
     usual, top = operating_speed(designs), designs.top_speed
     target = until * np.where(np.isfinite(usual), usual, top)
     run = Run(designs.crank(), np.zeros(designs.count), target, 1.0, turns, top)

@@ -17,7 +17,7 @@ from linksweep.analysis.drive.peaks_in_time import peaks_in_time
 from linksweep.base.checked_number import checked_number
 from linksweep.base.fields import declared
 from linksweep.base.frozen import with_sound
-from linksweep.base.validate import Number, Rule, count_problems, refuse
+from linksweep.base.validate import Number, Rule, refuse
 from linksweep.chains.between_links import force_name
 from linksweep.results.compute import quantity_problems, requested
 from linksweep.results.dataset import design_coordinates, flags, provenance, with_units
@@ -36,8 +36,8 @@ STEP = "step"
 class Designs:
     """All designs of a scene on its motor, in one row."""
 
-    def __init__(self, scene: Scene, train: DriveTrain, start: Number, threads: int | None) -> None:
-        self.train, self.threads = train, threads
+    def __init__(self, scene: Scene, train: DriveTrain, start: Number) -> None:
+        self.train = train
         self.scene = replace(train.scene, omega2=train.scene.omega2 + 0.0 * start)  # over all design dims
         self.sizes = self.scene.at_one_angle.inputs.sizes
         self.order = tuple(dict.fromkeys((*scene.at_one_angle.inputs.sizes, *self.sizes)))
@@ -78,7 +78,7 @@ class Designs:
         torque = self.torque if powered else idle
         drive = Drive(torque, heat if powered else idle, self.inertia, None if self.train.lossless else loss)
         way = np.full(self.count, self.train.direction)
-        return Crank(self.scene, drive, way, self.start, self.threads)
+        return Crank(self.scene, drive, way, self.start)
 
     def torque(self, rows: Array, speed: Array) -> Array:
         """Return the torque of the motors of some designs on the crank's shaft [N m]."""
@@ -105,13 +105,13 @@ class Designs:
         return with_sound(self.train.motor, **{name: values[rows] for name, values in self._numbers.items()})
 
 
-def checked(scene: Scene, start: Any, turns: Any, of: Names, threads: Any) -> tuple[Number, float, tuple[str, ...]]:
+def checked(scene: Scene, start: Any, turns: Any, of: Names) -> tuple[Number, float, tuple[str, ...]]:
     """Return the start [degree], the most turns and the names of quantities, as they are to be."""
     start, turns = checked_number("start", start, START), checked_number("turns", turns, TURNS)
     refuse([f"turns: has {np.ndim(turns)} dims: give one number for all designs"] if np.ndim(turns) else [])
     names = requested("of", pins_and_torque(scene) if of is None else of, scene)
     unknown = [problem for name in names for problem in quantity_problems("of", name, scene.table.quantity, scene)]
-    refuse(unknown + count_problems("threads", threads))
+    refuse(unknown)
     return start, turns, tuple(names)
 
 

@@ -15,6 +15,7 @@ from linksweep.analysis.drive.motors.motor import AnyMotor
 from linksweep.analysis.drive.periodic import OK, STATUS, Motion, periodic
 from linksweep.base.frozen import with_sound
 from linksweep.base.validate import Number, count_problems, refuse
+from linksweep.engine.threads import limits_threads
 from linksweep.results.compute import sample_status
 from linksweep.results.dataset import design_coordinates, flags, index_coordinate, kept_beside, origin_attributes
 from linksweep.scene.designs.selection import blocks, design_sizes
@@ -64,6 +65,7 @@ TEXTS = {
 }
 
 
+@limits_threads
 def steady_cycle(
     scene: Scene,
     motor: AnyMotor,
@@ -136,7 +138,7 @@ def steady_cycle(
     >>> ls.sweep(cycle.linksweep.scene, of="T12").sizes["theta2"]  # with the fluctuation in
     720
     """
-    train = drive_train(scene, motor, ratio, flywheel, efficiency, threads)
+    train = drive_train(scene, motor, ratio, flywheel, efficiency)
     refuse(count_problems("theta2", theta2) + _curve_problems(motor))
     sizes = {dim: n for dim, n in design_sizes(train.scene).items() if dim in train.dims}
     numbers = {name: np.full((*train.shape, theta2 if name in OVER_ANGLES else 1), np.nan) for name in TEXTS}

@@ -44,12 +44,12 @@ class Turning(NamedTuple):
     inertia: Array
 
     @classmethod
-    def of(cls, group: Any, threads: int | None = None) -> Turning:
+    def of(cls, group: Any) -> Turning:
         """Return the designs of a group, whose cranks turn fully."""
-        cycle = piecewise(group, NAMES[:2], threads)
+        cycle = piecewise(group, NAMES[:2])
         work, drive = ahead(cycle, 0)
         rows = np.arange(len(group.designs))
-        (omega2,) = group.values(NAMES[2:], rows, np.zeros(len(rows)), threads)
+        (omega2,) = group.values(NAMES[2:], rows, np.zeros(len(rows)))
         return cls(cycle, omega2, drive, work, cycle.terms[1])
 
     @property

@@ -72,11 +72,7 @@ class Rotation(NamedTuple):
 
 
 def rotation_under_load(
-    scene: Scene | MultiCylinder,
-    forces: Mapping[str, str],
-    exponents: Mapping[str, float],
-    part: Part | None = None,
-    threads: int | None = None,
+    scene: Scene | MultiCylinder, forces: Mapping[str, str], exponents: Mapping[str, float], part: Part | None = None
 ) -> Rotation:
     """Integrate rotation and damage of each pin over the whole cycle or a part of a turn [degree].
 
@@ -92,7 +88,7 @@ def rotation_under_load(
         for pin, force in forces.items()
     }
     every = (solved, time, *turns.values(), *damages.values())
-    totals = integrals(scene, dict(enumerate(every)), part, threads)
+    totals = integrals(scene, dict(enumerate(every)), part)
     arrays = [xr.DataArray(field.values, dims=field.dims) for field in totals.values()]
     of_pins = (dict(zip(forces, arrays[k:], strict=False)) for k in (2, 2 + len(forces)))
     return Rotation(scene.period if part is None else part[1] - part[0], arrays[0], arrays[1], *of_pins)

@@ -14,6 +14,7 @@ from linksweep.analysis.pins.main_bearings import main_bearings
 from linksweep.base.memory import require_memory
 from linksweep.base.validate import count_problems, quote, refuse
 from linksweep.chains.between_links import force_name
+from linksweep.engine.threads import limits_threads
 from linksweep.results.compute import angles_missing, require_dataset
 from linksweep.results.cylinders.multi_cylinder import MultiCylinder
 from linksweep.results.dataset import by_command, joined, with_units
@@ -26,6 +27,7 @@ from linksweep.scene.scene import Scene
 FRAMES = ("ground", "journal", "bearing")
 
 
+@limits_threads
 def bearings(
     scene: Scene | MultiCylinder,
     pins: Mapping[str, Bearing] | None = None,
@@ -94,20 +96,20 @@ def bearings(
     D          376.3     153.9           194.6      122.6
     """
     if isinstance(scene, MultiCylinder):
-        return main_bearings(scene.in_memory, pins, theta2, threads)
+        return main_bearings(scene.in_memory, pins, theta2)
     links = checked_pins(scene, pins)
     scene = in_memory(scene)
     grid = crank_grid(theta2, scene.period)
     part = None if grid.period else (float(grid.angles.min()), float(grid.angles.max()))
     refuse(angles_missing(scene) + _part_problems(part, scene.period))
     names = [name for pin, pair in links.items() for name in _outputs(scene, pin, pair)]
-    cycle = sweep(scene, theta2, of=["omega2", *dict.fromkeys(names)], threads=threads)
+    cycle = sweep(scene, theta2, of=["omega2", *dict.fromkeys(names)])
     fitted = {pin: (pins or {}).get(pin, Bearing()) for pin in links}
     forces, exponents = (
         {pin: force_name(*pair) for pin, pair in links.items()},
         {p: b.exponent for p, b in fitted.items()},
     )
-    rotation = rotation_under_load(scene, forces, exponents, part, threads)
+    rotation = rotation_under_load(scene, forces, exponents, part)
     reach, speeds = _reach(cycle["theta2"], part), {pin: cycle[f"omega_{pin}"] for pin in links}
     parts = [
         {"F": cycle[forces[pin]]}

@@ -15,8 +15,9 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from linksweep.base.validate import count_problems, refuse
+from linksweep.base.validate import refuse
 from linksweep.chains.between_links import pair_of
+from linksweep.engine.threads import limits_threads
 from linksweep.results.changed import quantities_with
 from linksweep.results.compute import quantity_problems, requested, require
 from linksweep.results.dataset import joined
@@ -24,6 +25,7 @@ from linksweep.results.sweep import sweep
 from linksweep.scene.scene import Scene
 
 
+@limits_threads
 def breakdown(
     scene: Scene, of: str | Iterable[str] | None = None, *, theta2: Any = 720, threads: int | None = None
 ) -> xr.Dataset:
@@ -74,21 +76,19 @@ def breakdown(
     Name: F32, dtype: float64
     """
     require(scene, "pins")
-    refuse(count_problems("threads", threads))
     names = _names(scene, of)
     grid = scene.grid(theta2)
     sampled = scene.at(grid)
     parts = tuple(dict.fromkeys(part for name in names for part in scene.table.quantity[name].components))
-    cycle = sweep(scene, theta2, of=dict.fromkeys([*names, *parts]), threads=threads)
+    cycle = sweep(scene, theta2, of=dict.fromkeys([*names, *parts]))
     shares = {
-        source: quantities_with(changed, single, grid, parts, threads)
-        for source, (single, changed) in _sources(sampled).items()
+        source: quantities_with(changed, single, grid, parts) for source, (single, changed) in _sources(sampled).items()
     }
     silent: dict[str, float] = {}
     for source, silenced in _beside(scene).items():
-        before = quantities_with(silent, sampled, grid, parts, threads)
+        before = quantities_with(silent, sampled, grid, parts)
         silent = silent | silenced
-        after = quantities_with(silent, sampled, grid, parts, threads)
+        after = quantities_with(silent, sampled, grid, parts)
         shares[source] = {part: before[part] - after[part] for part in parts}
     stacked = {part: joined([forces[part] for forces in shares.values()], "source", shares) for part in parts}
     described = {name: _described(cycle[name], _share(cycle, name, stacked)) for name in names}

@@ -21,6 +21,7 @@ from linksweep.analysis.pins.catalogue import SIZES, DeepGroove, catalogue
 from linksweep.base.units import quantity
 from linksweep.base.validate import as_float, choice_problems, name_problems, quote, refuse
 from linksweep.chains.between_links import force_name
+from linksweep.engine.threads import limits_threads
 from linksweep.results.compute import requested
 from linksweep.results.dataset import by_command, flags, joined, with_units
 from linksweep.results.peaks import peaks
@@ -47,6 +48,7 @@ TEXTS = {
 }
 
 
+@limits_threads
 def choose_bearings(
     scene: Scene,
     *,
@@ -124,8 +126,8 @@ def choose_bearings(
     refuse(choice_problems("kind", kind, EXPONENTS) + _problems(static_safety, series))
     bores, outsides = _limits("bore", bore, links, 0.0), _limits("outside", outside, links, np.inf)
     pins = {pin: Bearing(capacity=1.0, kind=kind) for pin in links}
-    loads = bearings(scene, pins, theta2=SAMPLES if theta2 is None else theta2, threads=threads)
-    largest = _largest(scene, links, theta2, threads)
+    loads = bearings(scene, pins, theta2=SAMPLES if theta2 is None else theta2)
+    largest = _largest(scene, links, theta2)
     turning = loads["L10h"].notnull() | (loads["rotation"] != 0.0)
     required = xr.where(turning, (hours / loads["L10h"]) ** (1.0 / EXPONENTS[kind]), 0.0)  # L10h ~ C^p, here of C = 1 N
     required_static = float(static_safety) * largest
@@ -149,11 +151,11 @@ def choose_bearings(
     return xr.Dataset({**choice, **described, "life_status": loads["life_status"]}, designs, attributes)
 
 
-def _largest(scene: Scene, links: Mapping[str, tuple[int, int]], theta2: Any, threads: int | None) -> xr.DataArray:
+def _largest(scene: Scene, links: Mapping[str, tuple[int, int]], theta2: Any) -> xr.DataArray:
     """Return the largest load of each pin: exact over a cycle, of samples over part of a turn."""
     forces = [force_name(*pair) for pair in links.values()]
     ends = None if theta2 is None else np.linspace(np.min(theta2), np.max(theta2), ON_A_WAY)
-    worst = peaks(scene, of=list(dict.fromkeys(forces)), theta2=ends, threads=threads)
+    worst = peaks(scene, of=list(dict.fromkeys(forces)), theta2=ends)
     return joined([worst[f"{force}_peak"] for force in forces], "pin", links)
 
 

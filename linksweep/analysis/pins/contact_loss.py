@@ -32,6 +32,7 @@ import xarray as xr
 from linksweep.analysis.pins.by_pin import Numbers, links_of_pins, numbers_by_pin
 from linksweep.base.validate import Number, Rule
 from linksweep.chains.between_links import force_name
+from linksweep.engine.threads import limits_threads
 from linksweep.results.dataset import by_command, joined, with_units
 from linksweep.results.sweep import sweep
 from linksweep.scene.designs.lazy import in_memory
@@ -44,6 +45,7 @@ STENCIL = {-2.0: 1.0 / 12.0, -1.0: -2.0 / 3.0, 1.0: 2.0 / 3.0, 2.0: -1.0 / 12.0}
 """Weights of the differences, of fourth order."""
 
 
+@limits_threads
 def contact_loss(
     scene: Scene,
     clearance: Numbers | None = None,
@@ -99,8 +101,8 @@ def contact_loss(
     scene = in_memory(scene)
     gaps = {} if clearance is None else numbers_by_pin("clearance", clearance, pins, CLEARANCE)
     names = [f"{force_name(*pair)}{axis}" for pair in pins.values() for axis in "xy"]
-    cycle = sweep(scene, theta2, of=["omega2", *names], threads=threads)
-    slopes = _slopes(scene, cycle, names, threads)
+    cycle = sweep(scene, theta2, of=["omega2", *names])
+    slopes = _slopes(scene, cycle, names)
     parts = [_of_pin(cycle, slopes, force_name(*pair)) for pair in pins.values()]
     if gaps:
         for pin, part in zip(pins, parts, strict=True):
@@ -118,13 +120,13 @@ TEXTS = {
 }
 
 
-def _slopes(scene: Scene, cycle: xr.Dataset, names: list[str], threads: int | None) -> xr.Dataset:
+def _slopes(scene: Scene, cycle: xr.Dataset, names: list[str]) -> xr.Dataset:
     """Return the derivatives of forces to the crank's angle [N/rad]."""
     index = scene.mechanism.index
     angles = cycle[index].values
     total: Any = 0.0
     for steps, weight in STENCIL.items():
-        beside = sweep(scene, angles + steps * STEP, of=names, threads=threads)[names]
+        beside = sweep(scene, angles + steps * STEP, of=names)[names]
         total = total + weight * beside.assign_coords({index: angles})
     return total / np.radians(STEP)
 

@@ -26,19 +26,19 @@ LIFE = ("equivalent_load", "L10", "L10h")
 """Results of a bearing that have derivatives."""
 
 
-def life(scene: Scene, pin: str, bearing: Bearing, threads: int | None = None) -> dict[str, xr.DataArray]:
+def life(scene: Scene, pin: str, bearing: Bearing) -> dict[str, xr.DataArray]:
     """Return the life of a bearing in a pin, and its status, each over the design dims."""
     forces = {pin: force_name(*scene.mechanism.pins[pin])}
-    rotation = rotation_under_load(scene, forces, {pin: bearing.exponent}, threads=threads)
+    rotation = rotation_under_load(scene, forces, {pin: bearing.exponent})
     return rotation.life(pin, bearing.capacity, bearing.exponent)
 
 
 def life_derivatives(
-    scene: Scene, word: str, pin: str, bearing: Bearing, to: tuple[str, ...], threads: int | None = None
+    scene: Scene, word: str, pin: str, bearing: Bearing, to: tuple[str, ...]
 ) -> tuple[dict[str, xr.DataArray], Mapping[str, xr.DataArray]]:
     """Return the life of a bearing in a pin, and the derivatives of one of its `LIFE` to parameters."""
-    results = life(scene, pin, bearing, threads)
-    total = integral_derivatives(scene, _integrals(scene, pin, bearing.exponent), to, threads)
+    results = life(scene, pin, bearing)
+    total = integral_derivatives(scene, _integrals(scene, pin, bearing.exponent), to)
     slopes = {path: results[word] * _relative(word, total, path, bearing.exponent) for path in to}
     return results, slopes
 

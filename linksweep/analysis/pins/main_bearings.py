@@ -32,18 +32,16 @@ MAIN_TEXTS = TEXTS | {
 NO_MAINS = "main_positions: places of the main bearings are unknown; give two places or more, main_positions=[...]"
 
 
-def main_bearings(
-    machine: MultiCylinder, pins: Mapping[str, Bearing] | None, theta2: int, threads: int | None = None
-) -> xr.Dataset:
+def main_bearings(machine: MultiCylinder, pins: Mapping[str, Bearing] | None, theta2: int) -> xr.Dataset:
     """Return loads, rotation, friction and life of main bearings, as `linksweep.bearings` does of pins."""
     refuse(count_problems("theta2", theta2) + ([] if machine.mains else [NO_MAINS]))
     mains = {main(k): f"F_{main(k)}" for k in range(1, len(machine.mains) + 1)}
     refuse(bearing_problems(pins, mains))
     fitted = {name: (pins or {}).get(name, Bearing()) for name in mains}
     components = [f"{force}{axis}" for force in mains.values() for axis in ("", "x", "y")]
-    cycle = machine.sweep(theta2, of=components, threads=threads)
-    rotation = rotation_under_load(machine, mains, {name: b.exponent for name, b in fitted.items()}, threads=threads)
-    highest = peaks(machine, of=mains.values(), threads=threads)
+    cycle = machine.sweep(theta2, of=components)
+    rotation = rotation_under_load(machine, mains, {name: b.exponent for name, b in fitted.items()})
+    highest = peaks(machine, of=mains.values())
     speed = xr.DataArray(machine.engine.omega2)
     parts = [
         {"F": cycle[force], "F_peak": highest[f"{force}_peak"], "F_peak_at": highest[f"{force}_peak_at"]}

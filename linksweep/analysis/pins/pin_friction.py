@@ -21,6 +21,7 @@ import xarray as xr
 from linksweep.analysis.pins.bearing import Bearing, checked_pins
 from linksweep.base.validate import Number, count_problems, refuse
 from linksweep.chains.between_links import force_name
+from linksweep.engine.threads import limits_threads
 from linksweep.physics.bearing import friction_circle
 from linksweep.results.dataset import flags, joined, with_units
 from linksweep.results.sweep import sweep
@@ -45,6 +46,7 @@ class RubbingPin(NamedTuple):
         return force_name(self.i, self.j)
 
 
+@limits_threads
 def pin_friction(
     scene: Scene,
     pins: Mapping[str, Bearing],
@@ -103,11 +105,11 @@ def pin_friction(
     """
     rubbing = _rubbing(scene, pins)
     refuse(count_problems("theta2", theta2) + count_problems("iterations", iterations))
-    speeds = sweep(scene, theta2, of=[f"omega_{pin}" for pin in rubbing], threads=threads)
+    speeds = sweep(scene, theta2, of=[f"omega_{pin}" for pin in rubbing])
     speed = {pin: xr.DataArray(speeds[f"omega_{pin}"]) for pin in rubbing}
     senses = {pin: xr.DataArray(-np.sign(omega)).fillna(0.0) for pin, omega in speed.items()}  # of moments on link j
-    with_friction, torques, change = _converged(scene, rubbing, senses, theta2, iterations, threads)
-    cycle = sweep(with_friction, theta2, of=of, threads=threads)
+    with_friction, torques, change = _converged(scene, rubbing, senses, theta2, iterations)
+    cycle = sweep(with_friction, theta2, of=of)
     fast = ~(change <= TOLERANCE) & (cycle["status"] == 0)
     losses = [abs(torque * speed[pin]) for pin, torque in torques.items()]
     moment = "moment of friction on link j of the pin force Fij, counter-clockwise"
@@ -120,7 +122,7 @@ def pin_friction(
     cycle = cycle.assign({name: cycle[name].where(~fast).assign_attrs(cycle[name].attrs) for name in forces})
     agreement = flags("whether pin friction and pin forces agree; forces are NaN where they do not", MEANINGS)
     cycle["convergence"] = fast.astype(np.int8).assign_attrs(agreement)
-    cycle["efficiency"] = _efficiency(with_friction, cycle["friction_loss"].sum("pin", skipna=False), theta2, threads)
+    cycle["efficiency"] = _efficiency(with_friction, cycle["friction_loss"].sum("pin", skipna=False), theta2)
     return cycle.assign_attrs(command=f"linksweep.pin_friction(scene, ..., theta2={theta2})")
 
 
@@ -136,14 +138,14 @@ def _rubbing(scene: Scene, pins: Mapping[str, Bearing]) -> dict[str, RubbingPin]
 
 
 def _converged(
-    scene: Scene, pins: Mapping[str, RubbingPin], senses: Arrays, theta2: int, iterations: int, threads: int | None
+    scene: Scene, pins: Mapping[str, RubbingPin], senses: Arrays, theta2: int, iterations: int
 ) -> tuple[Scene, Arrays, xr.DataArray]:
     """Return the scene with friction as loads, its moments by pin, and their last change, relative to the largest."""
     forces = [pin.force for pin in pins.values()]
     torques = {pin: 0.0 * senses[pin] for pin in pins}
     for _ in range(iterations):
         with_friction = replace(scene, loads=(*scene.loads, *_as_loads(scene, pins, torques, theta2)))
-        cycle = sweep(with_friction, theta2, of=forces, threads=threads)
+        cycle = sweep(with_friction, theta2, of=forces)
         new = {pin: senses[pin] * rub.radius * cycle[rub.force].fillna(0.0) for pin, rub in pins.items()}
         change = _largest(new[pin] - torques[pin] for pin in pins) / _largest(new.values()).clip(min=1e-300)
         runaway = ~np.isfinite(change)
@@ -178,10 +180,10 @@ def _largest(arrays: Iterable[xr.DataArray]) -> xr.DataArray:
     return xr.concat(every, "pin", coords="minimal", compat="override").max("pin", skipna=False)
 
 
-def _efficiency(scene: Scene, loss: xr.DataArray, theta2: int, threads: int | None) -> xr.DataArray:
+def _efficiency(scene: Scene, loss: xr.DataArray, theta2: int) -> xr.DataArray:
     """Return the efficiency by energies over time: a sample stands for the time that the crank takes to the next."""
     names = [name for name in ("power", "omega2", "friction_power") if name in scene.table.quantity]
-    cycle = sweep(scene, theta2, of=names, threads=threads)
+    cycle = sweep(scene, theta2, of=names)
     times = 1.0 / abs(cycle["omega2"])
     lost = ((loss - cycle.get("friction_power", 0.0)) * times).sum("theta2", skipna=False)
     fed = (cycle["power"] * times).sum("theta2", skipna=False)

@@ -19,6 +19,7 @@ import xarray as xr
 from linksweep.analysis.pins.breakdown import forces_of
 from linksweep.base.checked_number import checked_number
 from linksweep.base.validate import Rule, refuse
+from linksweep.engine.threads import limits_threads
 from linksweep.results.changed import quantities_with
 from linksweep.results.compute import quantity_problems, requested, require
 from linksweep.results.dataset import design_coordinates, origin_attributes, with_units
@@ -40,6 +41,7 @@ TERMS = {
 """Each term by its ending: the numbers that isolate it, its unit beside the force's, and its description."""
 
 
+@limits_threads
 def speed_separation(
     scene: Scene, of: str | Iterable[str] | None = None, *, theta2: Any = 720, threads: int | None = None
 ) -> xr.Dataset:
@@ -85,10 +87,10 @@ def speed_separation(
     grid = scene.grid(theta2)
     sampled = scene.at(grid)
     bare = replace(sampled, loads=())
-    cycle = sweep(scene, theta2, of=names, threads=threads)
+    cycle = sweep(scene, theta2, of=names)
     terms = {}
     for ending, (changed, units, words) in TERMS.items():
-        forces = quantities_with(changed, sampled if ending == "static" else bare, grid, names, threads)
+        forces = quantities_with(changed, sampled if ending == "static" else bare, grid, names)
         for name in names:
             term, whole = forces[name].where(cycle["status"] == 0), cycle[name]
             terms[f"{name}_{ending}"] = (term, f"{whole.units} {units}".strip(), f"{words}: {whole.long_name}")
@@ -96,6 +98,7 @@ def speed_separation(
     return cycle[["status"]].assign(with_units(terms)).assign_attrs(command=command)
 
 
+@limits_threads
 def speed_limit(scene: Scene, of: str, *, below: float, threads: int | None = None) -> xr.Dataset:
     """Compute the highest crank speed at which the exact peak of a force or torque stays below a limit.
 
@@ -145,11 +148,11 @@ def speed_limit(scene: Scene, of: str, *, below: float, threads: int | None = No
     below = checked_number("below", below, LIMITS[scene.table.quantity[name].units])
     parts = scene.table.quantity[name].components
     unit_speed = replace(scene, omega2=_one_each(scene))
-    squared, angle = _of_samples(unit_speed, parts, below, threads), xr.DataArray(math.nan)
+    squared, angle = _of_samples(unit_speed, parts, below), xr.DataArray(math.nan)
     for _ in range(CUTS):
         at_speed = replace(scene, omega2=unit_speed.omega2 * np.sqrt(squared.where(np.isfinite(squared), 0.0)))
-        peak, angle = _peak(at_speed, name, threads)
-        cut = _cut(at_speed, parts, angle, below, threads).where(np.isfinite(peak))
+        peak, angle = _peak(at_speed, name)
+        cut = _cut(at_speed, parts, angle, below).where(np.isfinite(peak))
         over = np.isfinite(squared) & (peak > below * (1.0 + CLOSE)) & ~(cut >= squared)
         squared = squared.where(~over, cut)
         if not bool(over.any()):
@@ -181,14 +184,14 @@ def _one_each(scene: Scene) -> xr.DataArray:
     return (xr.DataArray(np.ones(tuple(sizes.values())), dims=tuple(sizes)) * sign).transpose(*sizes)
 
 
-def _of_samples(scene: Scene, parts: tuple[str, ...], below: float, threads: int | None) -> xr.DataArray:
+def _of_samples(scene: Scene, parts: tuple[str, ...], below: float) -> xr.DataArray:
     """Return the largest ω2² that the samples of a grid allow; the continuous revolution can only lower it."""
     index = scene.mechanism.index
     grid = scene.grid(SAMPLES)
     sampled = scene.at(grid)
-    ok = sweep(scene, SAMPLES, of=[], threads=threads)["status"].drop_vars(index, errors="ignore") == 0
-    growing = quantities_with(TERMS["per_omega2_squared"][0], replace(sampled, loads=()), grid, parts, threads)
-    standing = quantities_with({"omega2": 0.0}, sampled, grid, parts, threads)
+    ok = sweep(scene, SAMPLES, of=[])["status"].drop_vars(index, errors="ignore") == 0
+    growing = quantities_with(TERMS["per_omega2_squared"][0], replace(sampled, loads=()), grid, parts)
+    standing = quantities_with({"omega2": 0.0}, sampled, grid, parts)
     roots = _roots([growing[part] for part in parts], [standing[part] for part in parts], below)
     lower, upper = (xr.broadcast(root, ok, scene.omega2)[0] for root in roots)
     least = lower.where(ok, -math.inf).max(index, skipna=False)
@@ -210,22 +213,22 @@ def _roots(growing: list, standing: list, below: float) -> tuple[Any, Any]:
         return lower, xr.where(flat, kept, np.maximum(first, second))
 
 
-def _peak(scene: Scene, name: str, threads: int | None) -> tuple[xr.DataArray, xr.DataArray]:
+def _peak(scene: Scene, name: str) -> tuple[xr.DataArray, xr.DataArray]:
     """Return the exact peak of a magnitude, or of a signed quantity's magnitude, and its angle."""
-    worst = peaks(scene, of=[name], threads=threads).drop_vars("status").reset_coords(drop=True)
+    worst = peaks(scene, of=[name]).drop_vars("status").reset_coords(drop=True)
     if f"{name}_peak_at" in worst:
         return worst[f"{name}_peak"], worst[f"{name}_peak_at"]
     positive = worst[f"{name}_max"] >= -worst[f"{name}_min"]
     return worst[f"{name}_peak"], xr.where(positive, worst[f"{name}_max_at"], worst[f"{name}_min_at"])
 
 
-def _cut(scene: Scene, parts: tuple[str, ...], angle: xr.DataArray, below: float, threads: int | None) -> xr.DataArray:
+def _cut(scene: Scene, parts: tuple[str, ...], angle: xr.DataArray, below: float) -> xr.DataArray:
     """Return the upper root at this angle of each design, which bounds the speed from above."""
     speed = scene.omega2
     designs, angles = np.arange(speed.size), angle.broadcast_like(speed).transpose(*speed.dims).values.ravel()
     angles = np.where(np.isfinite(angles), angles, 0.0)
-    standing = quantities_at(replace(scene, omega2=0.0 * speed), parts, designs, angles, threads)
+    standing = quantities_at(replace(scene, omega2=0.0 * speed), parts, designs, angles)
     with np.errstate(all="ignore"):
-        growing = (quantities_at(scene, parts, designs, angles, threads) - standing) / speed.values.ravel() ** 2
+        growing = (quantities_at(scene, parts, designs, angles) - standing) / speed.values.ravel() ** 2
     _, upper = _roots([*growing], [*standing], below)
     return speed.copy(data=np.reshape(np.asarray(upper), speed.shape)).where(lambda w: w >= 0.0)

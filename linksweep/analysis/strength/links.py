@@ -17,6 +17,7 @@ from linksweep.analysis.strength.material import Material
 from linksweep.analysis.strength.strength import beams_of, materials_of, strength
 from linksweep.base.checked_number import checked_number
 from linksweep.base.validate import Number, Rule, choice_problems, refuse
+from linksweep.engine.threads import limits_threads
 from linksweep.mechanisms.links import Bar
 from linksweep.results.compute import require_scene
 from linksweep.results.dataset import design_coordinates, flags, joined, provenance, with_units
@@ -34,6 +35,7 @@ SAFETY = Rule("dimensionless", above=0.0)
 MEANINGS = ("ok", "not_reached")
 
 
+@limits_threads
 def size_links(
     scene: Scene,
     material: Material | Mapping[str, Material],
@@ -112,7 +114,7 @@ def size_links(
 
     def excess(log: Any) -> Any:
         """Return the logarithm of the safety over the required one, at logarithms of the measures."""
-        ds = strength(_with(scene, roles, vary, np.exp(log)), without_life, threads=threads, **options)
+        ds = strength(_with(scene, roles, vary, np.exp(log)), without_life, **options)
         return np.log(_least_safety(ds) / required)
 
     start = joined([getattr(scene.mechanism.parts[role], vary) for role in roles], "link", roles)

@@ -22,6 +22,7 @@ from linksweep.analysis.pins.by_pin import Numbers, links_of_pins, numbers_by_pi
 from linksweep.base.checked_number import checked_number
 from linksweep.base.validate import Number, Rule, choice_problems, quote, refuse
 from linksweep.chains.between_links import force_name
+from linksweep.engine.threads import limits_threads
 from linksweep.results.dataset import by_command, flags, joined, with_units
 from linksweep.results.peaks import peaks
 from linksweep.scene.designs.lazy import in_memory
@@ -31,6 +32,7 @@ CRITERIA = ("shear", "pressure", "bending")
 STRESS, WIDTH = Rule("pressure", above=0.0), Rule("length", above=0.0)
 
 
+@limits_threads
 def size_pins(
     scene: Scene,
     *,
@@ -87,7 +89,7 @@ def size_pins(
     eyes = _widths("eye", eye, pins)
     arms = {pin: 0.5 * width for pin, width in eyes.items()} if fork is None else _widths("fork", fork, pins)
     forces = {pin: force_name(*pair) for pin, pair in pins.items()}
-    worst = peaks(scene, of=list(forces.values()), threads=threads)
+    worst = peaks(scene, of=list(forces.values()))
     largest = {pin: worst[f"{name}_peak"] for pin, name in forces.items()}
     needed = [
         joined(_diameters(force, limits, eyes[pin], arms[pin]), "criterion", limits) for pin, force in largest.items()

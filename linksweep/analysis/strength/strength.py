@@ -18,6 +18,7 @@ from linksweep.analysis.strength.fatigue import life
 from linksweep.analysis.strength.material import Material
 from linksweep.base.checked_number import checked_number
 from linksweep.base.validate import Number, Rule, choice_problems, name_problems, quote, refuse
+from linksweep.engine.threads import limits_threads
 from linksweep.results.compute import requested, require, require_scene
 from linksweep.results.dataset import design_coordinates, flags, joined, provenance, with_units
 from linksweep.results.peaks import peaks
@@ -56,6 +57,7 @@ TEXTS_OF_LIFE = {
 """Results where some material has a slope."""
 
 
+@limits_threads
 def strength(
     scene: Scene,
     material: Material | Mapping[str, Material],
@@ -126,7 +128,7 @@ def strength(
     factor = checked_number("stress_concentration", stress_concentration, CONCENTRATION)
     lengths = [checked_number(f"effective_length[{k}]", one, FACTOR) for k, one in enumerate(effective_length, 1)]
     scene = in_memory(scene)
-    parts = [_Link(scene, role, materials[role], factor, threads).results(lengths) for role in roles]
+    parts = [_Link(scene, role, materials[role], factor).results(lengths) for role in roles]
     statuses = [part.pop("status") for part in parts]
     texts = TEXTS | (TEXTS_OF_LIFE if any("life" in part for part in parts) else {})
     described = with_units(
@@ -143,8 +145,8 @@ def strength(
 class _Link:
     """A link that is a beam, with its material: its peaks along its sections, and what they mean."""
 
-    def __init__(self, scene: Scene, role: str, material: Material, factor: Number, threads: int | None) -> None:
-        self.scene, self.role, self.material, self.factor, self.threads = scene, role, material, factor, threads
+    def __init__(self, scene: Scene, role: str, material: Material, factor: Number) -> None:
+        self.scene, self.role, self.material, self.factor = scene, role, material, factor
         self.k, self.part = 2 + scene.mechanism.roles.index(role), scene.mechanism.parts[role]
         self.names = [f"stress{self.k}_{fibre}" for fibre in FIBRES]
 
@@ -177,7 +179,7 @@ class _Link:
         """Return the extremes of both fibres' stress, and the largest compression, at some sections."""
         section = share.transpose(..., PLACE)
         force = f"axial_force{self.k}"
-        ds = peaks(replace(self.scene, section=section), of=[*self.names, force], threads=self.threads)
+        ds = peaks(replace(self.scene, section=section), of=[*self.names, force])
         ds = ds.drop_vars(ds.coords)
         stress, angle = (self._of_fibres(ds, ends) for ends in (ENDS, tuple(f"{end}_at" for end in ENDS)))
         results = {"stress": stress * factor, "angle": angle, "axial": ds[f"{force}_min"], "at": ds[f"{force}_min_at"]}

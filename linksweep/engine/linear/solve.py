@@ -15,6 +15,7 @@ from linksweep.engine.kernel.machine_code import INTEGERS, ROW, MachineCode
 from linksweep.engine.kernel.translate import translated
 from linksweep.engine.linear import elimination, lanes
 from linksweep.engine.patience import Patience
+from linksweep.engine.threads import over_threads
 
 AT_ONCE = 4040
 """Samples of one call: their numbers stay in cache. Rows are an odd number of its lines long and so begin in different
@@ -35,24 +36,19 @@ class Structure(NamedTuple):
     torques: np.ndarray
 
 
-def unknowns(
-    structure: Structure,
-    values: Sequence[np.ndarray],
-    refined: bool = False,
-    threads: int | None = None,
-) -> np.ndarray:
+def unknowns(structure: Structure, values: Sequence[np.ndarray], refined: bool = False) -> np.ndarray:
     """Return the unknowns (unknown, sample) of the systems whose terms take `values`, each of shape (sample).
 
     They are NaN where a matrix is singular. `refined` adds one step of iterative refinement.
     """
     n = len(structure.torques)
-    return _run("solve_refined" if refined else "solve", structure, values, (n, n + 1), threads)
+    return _run("solve_refined" if refined else "solve", structure, values, (n, n + 1))
 
 
-def condition(structure: Structure, values: Sequence[np.ndarray], threads: int | None = None) -> np.ndarray:
+def condition(structure: Structure, values: Sequence[np.ndarray]) -> np.ndarray:
     """Return the 1-norm condition number (sample) of each equilibrated matrix; inf where it is singular."""
     n = len(structure.torques)
-    return _run("condition", structure, values, (1, 2 * n + 1), threads)[0]
+    return _run("condition", structure, values, (1, 2 * n + 1))[0]
 
 
 @dataclass(eq=False)
@@ -70,13 +66,7 @@ solver = lru_cache(maxsize=None)(Solver)
 """Return the one `Solver` of this name."""
 
 
-def _run(
-    name: str,
-    structure: Structure,
-    values: Sequence[np.ndarray],
-    widths: tuple[int, int],
-    threads: int | None,
-) -> np.ndarray:
+def _run(name: str, structure: Structure, values: Sequence[np.ndarray], widths: tuple[int, int]) -> np.ndarray:
     """Return what a function of `elimination` writes; `widths` are its rows of results and the matrix's columns."""
     (rows, columns), samples = widths, len(values[0])
     require_memory(f"{rows * samples} numbers (results × designs × angles): ask for fewer", 8.0 * rows * samples)
@@ -99,5 +89,5 @@ def _run(
                 function(blocks, *structure, matrix, numbers, of_blocks)
             result[:, start : start + count] = written[:, :count]
 
-    run.over_threads(work, -(-samples // AT_ONCE), 1 + samples // SAMPLES_PER_THREAD, threads)
+    over_threads(work, -(-samples // AT_ONCE), 1 + samples // SAMPLES_PER_THREAD)
     return result

@@ -17,7 +17,7 @@ KINDS = (*[INTEGER] * 4, *OF_DESIGNS, "f8[:, :, :]", ROW, TABLE, ROW, TABLE, ROW
 
 
 def dips_and_zeros(
-    plan: Plan, inputs: Fields, dim: str, kinds: np.ndarray, ends: np.ndarray, threads: int | None
+    plan: Plan, inputs: Fields, dim: str, kinds: np.ndarray, ends: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the narrow dips and the zeros of signals of these kinds, and where there may be more of them, as rows of
     `samples` (row, design, nth), NaN for none; and whether each design is left: one of which noise may take a
@@ -39,5 +39,5 @@ def dips_and_zeros(
             np.zeros((ZERO_ROWS, columns)), np.zeros(designs.lanes), events, left,
         )  # fmt: skip
 
-    over_blocks(work, designs.blocks, designs.designs, threads)
+    over_blocks(work, designs.blocks, designs.designs)
     return events, left > 0.0

@@ -53,18 +53,12 @@ class PeaksOnPieces(NamedTuple):
 
 
 def find_peaks(
-    plan: Plan,
-    signals: tuple[str, ...],
-    inputs: Fields,
-    sizes: Sizes,
-    smooth: bool,
-    sparse: bool,
-    threads: int | None,
+    plan: Plan, signals: tuple[str, ...], inputs: Fields, sizes: Sizes, smooth: bool, sparse: bool
 ) -> list[Peaks]:
     """Return the largest value of each signal over the turn, for every design; `smooth` tells that none has jumps or
     kinks, `sparse` that summits may lie between neighbouring samples."""
     requests = _requests(plan, signals)
-    return [_peaks(request, laid_out(request, inputs, sizes), smooth, sparse, threads) for request in requests]
+    return [_peaks(request, laid_out(request, inputs, sizes), smooth, sparse) for request in requests]
 
 
 @lru_cache(maxsize=64)
@@ -80,7 +74,7 @@ def _requests(plan: Plan, signals: tuple[str, ...]) -> list[Plan]:
     ]
 
 
-def _peaks(plan: Plan, designs: LaidOut, smooth: bool, sparse: bool, threads: int | None) -> Peaks:
+def _peaks(plan: Plan, designs: LaidOut, smooth: bool, sparse: bool) -> Peaks:
     """Return the peaks of a plan's signals, which all have the same dims."""
     signals, lanes, blocks = designs.signals, designs.lanes, designs.blocks
     run, columns = designs.run(turns.search, OF_TURNS), lanes * len(signals)
@@ -92,7 +86,7 @@ def _peaks(plan: Plan, designs: LaidOut, smooth: bool, sparse: bool, threads: in
             np.empty((turns.STATE_ROWS, columns)), np.empty((BRACKET_ROWS, turns.ROOM)), designs.gathered, best,
         )  # fmt: skip
 
-    over_blocks(work, blocks, designs.designs, threads)
+    over_blocks(work, blocks, designs.designs)
     stored = _of_designs(designs, best)
     return Peaks(signals, plan.loops, *(stored[row] for row in (PEAK, PEAK_ANGLE, BEYOND, EVALUATIONS)))
 
@@ -104,7 +98,6 @@ def find_peaks_on_pieces(
     dim: str,
     counts: np.ndarray,
     half: int,
-    threads: int | None,
     levels: np.ndarray | None = None,
 ) -> dict[str, PeaksOnPieces]:
     """Return the largest value of each signal on all pieces of every design; its highest sample at least, where no peak
@@ -120,13 +113,13 @@ def find_peaks_on_pieces(
         pieces = laid_out(request, inputs, {dim: len(counts), PIECE: int(counts.max())}, half)
         none = np.full((len(pieces.signals), len(counts)), -np.inf)
         highest = none if levels is None else levels[first : first + SIGNALS_AT_ONCE].astype(float)
-        best = _best_on_pieces(pieces, counts, highest.ravel(), threads)
+        best = _best_on_pieces(pieces, counts, highest.ravel())
         rows = (PEAK, PEAK_X, PEAK_FAR, BEYOND, EVALUATIONS, on_pieces.OF_PIECE)
         peaks |= {signal: PeaksOnPieces(*(best[row, k] for row in rows)) for k, signal in enumerate(pieces.signals)}
     return peaks
 
 
-def _best_on_pieces(pieces: LaidOut, counts: np.ndarray, highest: np.ndarray, threads: int | None) -> np.ndarray:
+def _best_on_pieces(pieces: LaidOut, counts: np.ndarray, highest: np.ndarray) -> np.ndarray:
     """Return the results of a search on pieces (row, signal, design)."""
     run = pieces.run(on_pieces.search, OF_PIECES)
     lanes, signals, (blocks, together) = pieces.lanes, len(pieces.signals), _blocks_of_pieces(pieces, len(counts))
@@ -141,7 +134,7 @@ def _best_on_pieces(pieces: LaidOut, counts: np.ndarray, highest: np.ndarray, th
             np.zeros((BRACKET_ROWS, turns.ROOM)), pieces.gathered, np.zeros((on_pieces.OF_PIECE, most)), best,
         )  # fmt: skip
 
-    over_blocks(work, blocks, len(counts), threads)
+    over_blocks(work, blocks, len(counts))
     return best.reshape(len(best), signals, len(counts))
 
 
@@ -157,9 +150,7 @@ def _of_designs(designs: LaidOut, best: np.ndarray) -> np.ndarray:
     return best.reshape(rows, signals, -1)[..., : designs.designs].reshape(rows, signals, *designs.shape)
 
 
-def zeros_of_pieces(
-    plan: Plan, inputs: Fields, dim: str, counts: np.ndarray, half: int, threads: int | None
-) -> np.ndarray:
+def zeros_of_pieces(plan: Plan, inputs: Fields, dim: str, counts: np.ndarray, half: int) -> np.ndarray:
     """Return the zeros of a plan's one signal on pieces (number, design, piece, nth), NaN for none: tangents, and 0 or
     1 for the half turn about the start or the end. The other arguments are as in `find_peaks_on_pieces`."""
     counts = counts.astype(np.int64)
@@ -175,5 +166,5 @@ def zeros_of_pieces(
             np.zeros((zeros.ZERO_ROWS, room)), pieces.gathered, places,
         )  # fmt: skip
 
-    over_blocks(work, blocks, len(counts), threads)
+    over_blocks(work, blocks, len(counts))
     return places.reshape(2, len(counts), most, zeros.MOST_ZEROS)

@@ -14,7 +14,8 @@ from linksweep.engine.kernel.translate import translated
 from linksweep.engine.peaks import turns
 from linksweep.engine.peaks.evaluators import FAR_WIDTH, NEAR_WIDTH, Evaluators, Functions
 from linksweep.engine.peaks.samples import EVENLY, HALF, grades
-from linksweep.engine.run import Fields, Sizes, flat, ordered, over_threads
+from linksweep.engine.run import Fields, Sizes, flat, ordered
+from linksweep.engine.threads import over_threads
 from linksweep.engine.trace.plan import Plan
 
 WIDTHS = (NEAR_WIDTH, FAR_WIDTH)
@@ -103,7 +104,7 @@ def laid_out(plan: Plan, inputs: Fields, sizes: Sizes, half: int = HALF, evenly:
     return LaidOut(signals, functions, shape, (parameters, parameter_at[:-1]), half, evenly)
 
 
-def over_blocks(work: Callable[[int, int], None], blocks: int, designs: int, threads: int | None) -> None:
+def over_blocks(work: Callable[[int, int], None], blocks: int, designs: int) -> None:
     """Run work(first, last) over blocks of so many designs."""
     with np.errstate(all="ignore"):
-        over_threads(work, blocks, 1 + designs // DESIGNS_PER_THREAD, threads)
+        over_threads(work, blocks, 1 + designs // DESIGNS_PER_THREAD)

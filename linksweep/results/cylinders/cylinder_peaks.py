@@ -24,7 +24,7 @@ from linksweep.results.scene_peaks import (
 from linksweep.scene.grid import crank_grid
 
 
-def peaks_of_cylinders(machine: MultiCylinder, of: list[str] | None, threads: int | None) -> xr.Dataset:
+def peaks_of_cylinders(machine: MultiCylinder, of: list[str] | None) -> xr.Dataset:
     """Return the peaks of an engine, as `linksweep.peaks` does.
 
     Forces in the pins of the cylinders are over the dim `cylinder`, counted from 1.
@@ -36,36 +36,34 @@ def peaks_of_cylinders(machine: MultiCylinder, of: list[str] | None, threads: in
         [name for name in names if name not in pins],
         lambda name: name_problems("of", name, [*machine.quantity, *machine.pin_forces]),
     )
-    ds = _of_sums(machine, sums, threads)
+    ds = _of_sums(machine, sums)
     if pins:
-        each = _of_pins(machine, pins, threads)
+        each = _of_pins(machine, pins)
         status = xr.where(each["status"] > ds["status"], each["status"], ds["status"], keep_attrs=True)
         ds = ds.assign(each.drop_vars("status").data_vars).assign(status=status)
     return ds.assign_attrs(command=f"linksweep.peaks(engine{'' if of is None else f', of={names}'})")
 
 
-def _of_sums(machine: MultiCylinder, sums: list[Request], threads: int | None) -> xr.Dataset:
+def _of_sums(machine: MultiCylinder, sums: list[Request]) -> xr.Dataset:
     """Return the peaks and means of sums over the cylinders."""
     (signals, powers), grid = needed(sums), crank_grid(STATUS_ANGLES, machine.period)
-    largest = exact_peaks_of_sums(machine, signals, threads) if signals else {}
-    averages = means(machine, powers, (), None, threads) if powers else {}
+    largest = exact_peaks_of_sums(machine, signals) if signals else {}
+    averages = means(machine, powers, (), None) if powers else {}
     results = [
-        Result(s.at_one_angle, grid, assembly_of(s, threads), s.table.limits is not None, largest, averages)
+        Result(s.at_one_angle, grid, assembly_of(s), s.table.limits is not None, largest, averages)
         for s in machine.cylinders
     ]
     # sums become NaN where none of a cylinder's samples is ok
-    each = [status_of(*pair, threads) for pair in zip(machine.cylinders, results, strict=True)]
+    each = [status_of(*pair) for pair in zip(machine.cylinders, results, strict=True)]
     worst = xr.Variable(each[0].dims, np.max([status.values for status in each], axis=0), each[0].attrs)
     variables, coordinates = labelled(sums, results[0]) | {"status": worst}, design_coordinates(results[0].sampled)
     attributes = origin_attributes(machine.engine, "") | {"title": "linksweep: MultiCylinder"}
     return xr.Dataset(variables, coordinates, attributes)
 
 
-def _of_pins(machine: MultiCylinder, names: list[str], threads: int | None) -> xr.Dataset:
+def _of_pins(machine: MultiCylinder, names: list[str]) -> xr.Dataset:
     """Return the peaks of each cylinder's own pin forces, at crank angles of the engine."""
-    once = {
-        scene: peaks_of_scene(scene, names, threads) for scene in machine.cylinders
-    }  # cylinders of a bank are equal
+    once = {scene: peaks_of_scene(scene, names) for scene in machine.cylinders}  # cylinders of a bank are equal
     each = [_shifted(once[s], t.ahead, machine.period) for s, t in zip(machine.cylinders, machine.throws, strict=True)]
     labels = np.arange(1, len(each) + 1)
     arrays = {str(name): joined([one[name] for one in each], "cylinder", labels) for name in each[0].data_vars}

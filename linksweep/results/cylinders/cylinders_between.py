@@ -58,12 +58,12 @@ class Cylinders(NamedTuple):
         """Return the designs in these rows."""
         return self._replace(each=tuple(group.some(rows) for group in self.each))
 
-    def values(self, names: tuple[str, ...], rows: Array, angles: Array, threads: int | None = None) -> Array:
+    def values(self, names: tuple[str, ...], rows: Array, angles: Array) -> Array:
         """Return values (names, pairs) of sums at pairs of a design, by its row, and an angle [degree]."""
         rules, throws, period = self.machine.rules, self.machine.throws, self.machine.period
         sources, angles = sources_of(names, rules), self._beside_jumps(rows, angles)
         own = [
-            group.values(sources, rows, in_period(angles + throw.ahead, period), threads)
+            group.values(sources, rows, in_period(angles + throw.ahead, period))
             for group, throw in zip(self.each, throws, strict=True)
         ]
         cylinders = [dict(zip(sources, values, strict=True)) for values in own]
@@ -141,14 +141,12 @@ def _pole_candidates(group: Cylinders, signals: tuple[str, ...]) -> Candidates:
     return concatenated([(row, angle - ahead, step) for (row, angle, step), ahead in parts])
 
 
-def exact_peaks_of_sums(
-    machine: MultiCylinder, signals: tuple[str, ...], threads: int | None = None
-) -> dict[str, SignalPeak]:
+def exact_peaks_of_sums(machine: MultiCylinder, signals: tuple[str, ...]) -> dict[str, SignalPeak]:
     """Return the peak of each sum over the continuous cycle, for every design; NaN where it has none."""
     peaks = {signal: nothing(field) for signal, field in empty(machine, signals).items()}
     paths: tuple[PathsOf, ...] = (turns, about_approaches) if machine.engine.approaches() else (turns,)
     for _, group in assembled_groups(machine, signals):
-        follow(group, peaks, paths, threads)
+        follow(group, peaks, paths)
         if may_have_poles(machine.engine, signals):
-            raise_to_poles(group, peaks, threads)
+            raise_to_poles(group, peaks)
     return peaks if machine.engine.quick.all else {signal: with_unknown_bound(peak) for signal, peak in peaks.items()}

@@ -21,6 +21,7 @@ from linksweep.base.frozen import normalise
 from linksweep.base.validate import Rule, is_array, name_problems, number_problems, quote, refuse
 from linksweep.chains.between_links import force_name
 from linksweep.engine.quantity import Quantity
+from linksweep.engine.threads import limits_threads
 from linksweep.mechanisms.capabilities import lack
 from linksweep.results.compute import either, requested
 from linksweep.results.cylinders.cylinder_sums import (
@@ -178,6 +179,7 @@ class MultiCylinder(ByContent):
         }
         return tuple(turned[bank] for bank in banks)
 
+    @limits_threads
     def sweep(
         self,
         theta2: Any = 720,
@@ -218,7 +220,7 @@ class MultiCylinder(ByContent):
         needed = dict.fromkeys((*names, "status"))
         sources = sources_of(needed, self.rules)
         cycles = [
-            _bare(sweep(scene, np.mod(grid.angles + throw.ahead, self.period), of=sources, threads=threads))
+            _bare(sweep(scene, np.mod(grid.angles + throw.ahead, self.period), of=sources))
             for scene, throw in zip(self.cylinders, self.throws, strict=True)
         ]
         sums = combined(needed, self.rules, self.throws, cycles)

@@ -43,9 +43,7 @@ class Integrated(NamedTuple):
     slopes: Mapping[tuple[str, str], xr.DataArray]
 
 
-def integral_derivatives(
-    scene: Scene, requests: Mapping[str, Integral], to: tuple[str, ...], threads: int | None = None
-) -> Integrated:
+def integral_derivatives(scene: Scene, requests: Mapping[str, Integral], to: tuple[str, ...]) -> Integrated:
     """Return integrals over the cycle with their derivatives to parameters, each over the design dims."""
     every = tuple(dict.fromkeys(name for integral in requests.values() for name in integral.names))
     own = differentiated(scene, every, to)
@@ -55,10 +53,7 @@ def integral_derivatives(
         for path in to:
             slopes = tuple(derivative_of(name, path) for name in integral.names)
             integrands[key, path] = Integrand((*integral.names, *slopes), partial(_known, integral.slope))
-    total = {
-        key: xr.DataArray(field.values, dims=field.dims)
-        for key, field in integrals(own, integrands, threads=threads).items()
-    }
+    total = {key: xr.DataArray(field.values, dims=field.dims) for key, field in integrals(own, integrands).items()}
     for key, integral in requests.items():
         for path, jumped in _jumped(own, integral).items():
             total[key, path] = total[key, path] + jumped

@@ -18,16 +18,14 @@ from linksweep.scene.pairs import Array
 from linksweep.scene.scene import Scene
 
 
-def mean_derivatives(
-    scene: Scene, name: str, power: int, to: tuple[str, ...], threads: int | None = None
-) -> dict[str, xr.DataArray]:
+def mean_derivatives(scene: Scene, name: str, power: int, to: tuple[str, ...]) -> dict[str, xr.DataArray]:
     """Return the derivatives of the mean over time of a power (1 or 2) of a quantity, by parameter."""
     names = (name, *changing_pace(scene.at_one_angle))
     requests = {
         "sum": Integral(names, partial(_weighted, power), partial(_slope_of_weighted, power)),
         "time": Integral(names, partial(_weighted, 0), partial(_slope_of_weighted, 0)),
     }
-    total = integral_derivatives(scene, requests, to, threads)
+    total = integral_derivatives(scene, requests, to)
     whole, time = total.values["sum"], total.values["time"]
     with np.errstate(all="ignore"):
         return {path: (total.slopes["sum", path] - whole / time * total.slopes["time", path]) / time for path in to}

@@ -24,14 +24,12 @@ class Samples(NamedTuple):
     status: Field
 
 
-def sample_derivatives(
-    scene: Scene, grid: Grid, names: tuple[str, ...], to: tuple[str, ...], threads: int | None = None
-) -> Samples:
+def sample_derivatives(scene: Scene, grid: Grid, names: tuple[str, ...], to: tuple[str, ...]) -> Samples:
     """Return quantities at the angles of a grid, and their derivatives to parameters; NaN where not ok."""
     sampled = differentiated(scene, names, to).at(grid)
     named = {(name, path): derivative_of(name, path) for name in names for path in to}
-    fields = compute(sampled, grid, (*names, *named.values()), threads)
-    status = sample_status(scene.at(grid), grid, threads)
+    fields = compute(sampled, grid, (*names, *named.values()))
+    status = sample_status(scene.at(grid), grid)
     blank(fields, status)
     return Samples({name: fields[name] for name in names}, {key: fields[own] for key, own in named.items()}, status)
 

@@ -98,7 +98,7 @@ def raise_to(peak: SignalPeak, group: Any, numbers: tuple[Array, ...]) -> None:
         _raise(peak, flat_index(peak.value, group.places, len(group.designs)), *numbers)
 
 
-def follow(group: Any, peaks: dict[str, SignalPeak], all_paths: tuple[PathsOf, ...], threads: int | None) -> None:
+def follow(group: Any, peaks: dict[str, SignalPeak], all_paths: tuple[PathsOf, ...]) -> None:
     """Search along all paths of a group's designs, and replace the peaks that are exceeded."""
     for paths in (paths_of(group) for paths_of in all_paths):
         if not len(paths.row):
@@ -106,14 +106,14 @@ def follow(group: Any, peaks: dict[str, SignalPeak], all_paths: tuple[PathsOf, .
         places = group.some(paths.row).places
         at = [flat_index(peak.value, places, len(paths.row)) for peak in peaks.values()]
         current = [peak.value.values.reshape(-1)[index] for peak, index in zip(peaks.values(), at, strict=True)]
-        best = highest(group, tuple(peaks), paths, np.stack(current, axis=1), threads)
+        best = highest(group, tuple(peaks), paths, np.stack(current, axis=1))
         for k, (peak, index) in enumerate(zip(peaks.values(), at, strict=True)):
             _raise(peak, index, *(numbers[:, k] for numbers in best))
 
 
-def raise_to_poles(group: Any, peaks: dict[str, SignalPeak], threads: int | None, part: Part | None = None) -> None:
+def raise_to_poles(group: Any, peaks: dict[str, SignalPeak], part: Part | None = None) -> None:
     """Make the peaks infinite at the poles of their signals, those inside a part of the period if there is one."""
-    row, angle, infinite = poles(group, tuple(peaks), threads)
+    row, angle, infinite = poles(group, tuple(peaks))
     inside = _inside(angle, part, group.scene.period)
     row, angle, infinite = row[inside], angle[inside], infinite[inside]
     places, angle = group.some(row).places, angle_in_period(angle, group.scene.period)
@@ -123,9 +123,7 @@ def raise_to_poles(group: Any, peaks: dict[str, SignalPeak], threads: int | None
             field.values.reshape(-1)[at] = values
 
 
-def raise_to_limits(
-    group: Any, peaks: dict[str, SignalPeak], places: Singular, threads: int | None, part: Part | None = None
-) -> None:
+def raise_to_limits(group: Any, peaks: dict[str, SignalPeak], places: Singular, part: Part | None = None) -> None:
     """Raise finite peaks beside singular places to the limits of their signals there, or their bounds, where these are
     not known as well: samples closer by may consist of rounding errors. `part`: as of `raise_to_poles`."""
     places = Singular(*(numbers[_inside(places.angle, part, group.scene.period)] for numbers in places))
@@ -138,7 +136,7 @@ def raise_to_limits(
     def values_at(which: Array, ends: Array, x: Array) -> Array:
         angles, rows = angle[ends, None] + side[ends, None] * x, np.repeat(row[ends], x.shape[1])
         names = tuple(signals[k] for k in which)
-        return group.values(names, rows, angles.ravel(), threads).reshape(-1, *x.shape)
+        return group.values(names, rows, angles.ravel()).reshape(-1, *x.shape)
 
     limit, error, samples = limits_by_polynomials(values_at, np.full(len(row), STEP_AT_POLE), needs)
     beyond = OF_ROUNDING * error
@@ -177,22 +175,22 @@ def _raise(peak: SignalPeak, at: Array, best: Array, best_angle: Array, best_bou
 # ------------------------------------------------------------------------------------- lanes about summits
 
 
-def highest(group: Any, signals: tuple[str, ...], paths: Paths, current: Array, threads: int | None) -> Best:
+def highest(group: Any, signals: tuple[str, ...], paths: Paths, current: Array) -> Best:
     """Return the highest of each signal on each path; lanes that cannot exceed `current` (path, signal) are dropped."""
-    best = _search(group, signals, paths, current, threads)
-    return best if paths.steps is None else _with_limits(group, signals, paths, best, threads)
+    best = _search(group, signals, paths, current)
+    return best if paths.steps is None else _with_limits(group, signals, paths, best)
 
 
-def _search(group: Group, signals: tuple[str, ...], paths: Paths, current: Array, threads: int | None) -> Best:
+def _search(group: Group, signals: tuple[str, ...], paths: Paths, current: Array) -> Best:
     """Return the highest of each signal on each path, without the limits at its ends."""
     count_of_paths = len(paths.x)
     samples = 1 + (np.diff(paths.x, axis=1) > 0.0).sum(axis=1)  # others repeat a place
-    lanes, count, best = _opened(group, signals, paths, threads)
+    lanes, count, best = _opened(group, signals, paths)
 
     def values_at(tag: Array, x: Array) -> Array:
         path = tag // len(signals)
         samples[:] += np.bincount(path, minlength=count_of_paths)
-        values = group.values(signals, paths.row[path], paths.angles(path, x), threads)
+        values = group.values(signals, paths.row[path], paths.angles(path, x))
         return values[tag % len(signals), np.arange(len(tag))]
 
     with np.errstate(all="ignore"):
@@ -212,9 +210,9 @@ class Rises(NamedTuple):
     height: Array
 
 
-def rises(group: Group, signal: str, paths: Paths, level: Array, threads: int | None = None) -> Rises:
+def rises(group: Group, signal: str, paths: Paths, level: Array) -> Rises:
     """Return all rises of a signal on paths that may reach the level of their path, each refined on its own."""
-    lanes, count, _ = _opened(group, (signal,), paths, threads)
+    lanes, count, _ = _opened(group, (signal,), paths)
     count = _keep_promising(lanes, count, level, paths, 1)
     path = lanes[brackets.TAG, :count].astype(int)
     lanes[brackets.TAG, :count] = np.arange(count)
@@ -222,7 +220,7 @@ def rises(group: Group, signal: str, paths: Paths, level: Array, threads: int | 
     best[brackets.PEAK], best[brackets.PEAK_X] = lanes[brackets.FB, :count], lanes[brackets.XB, :count]
 
     def values_at(tag: Array, x: Array) -> Array:
-        return group.values((signal,), paths.row[path[tag]], paths.angles(path[tag], x), threads)[0]
+        return group.values((signal,), paths.row[path[tag]], paths.angles(path[tag], x))[0]
 
     with np.errstate(all="ignore"):
         refine(paths.x.size, lanes, count, best, values_at)
@@ -230,11 +228,11 @@ def rises(group: Group, signal: str, paths: Paths, level: Array, threads: int | 
     return Rises(path, angle, best[brackets.PEAK])
 
 
-def _opened(group: Group, signals: tuple[str, ...], paths: Paths, threads: int | None) -> tuple[Array, int, Array]:
+def _opened(group: Group, signals: tuple[str, ...], paths: Paths) -> tuple[Array, int, Array]:
     """Return the lanes about all samples that may lead to a peak, their number, and each signal's highest sample."""
     count_of_paths, per_path = paths.x.shape
     every = np.repeat(np.arange(count_of_paths), per_path)
-    values = group.values(signals, paths.row[every], paths.angles(every, paths.x.ravel()), threads)
+    values = group.values(signals, paths.row[every], paths.angles(every, paths.x.ravel()))
     rows = values.reshape(len(signals), count_of_paths, per_path).swapaxes(0, 1)
     lanes = np.zeros((brackets.BRACKET_ROWS, brackets.in_blocks(rows.size // 2 + 1)))
     best = np.empty((brackets.BEST_ROWS, count_of_paths * len(signals)))
@@ -267,11 +265,11 @@ def _promising(lanes: Array, peak: Array, paths: Paths, signals: int) -> Array:
 # ------------------------------------------------------------------------------------- limits at ends of arcs
 
 
-def _with_limits(group: Group, signals: tuple[str, ...], paths: Paths, best: Best, threads: int | None) -> Best:
+def _with_limits(group: Group, signals: tuple[str, ...], paths: Paths, best: Best) -> Best:
     """Return the highest values on arcs, raised to the limits at their ends: inf where a signal is unbounded."""
     value, angle, bound, samples = best
     for end, side in enumerate((-1.0, 1.0)):
-        limit, error, more = (numbers.T for numbers in _limits(group, signals, paths, end, value.T, threads))
+        limit, error, more = (numbers.T for numbers in _limits(group, signals, paths, end, value.T))
         raised = limit > value
         edge = paths.middle + side * paths.half
         value, bound, samples = np.where(raised, limit, value), np.where(raised, error, bound), samples + more
@@ -279,16 +277,14 @@ def _with_limits(group: Group, signals: tuple[str, ...], paths: Paths, best: Bes
     return value, angle, bound, samples
 
 
-def _limits(
-    group: Group, signals: tuple[str, ...], paths: Paths, end: int, peak: Array, threads: int | None
-) -> tuple[Array, Array, Array]:
+def _limits(group: Group, signals: tuple[str, ...], paths: Paths, end: int, peak: Array) -> tuple[Array, Array, Array]:
     """Return limits (signal, path) at one end of arcs that may exceed a peak, their errors, and counts of samples."""
     step = paths.steps[:, end]
 
     def values_at(which: Array, rows: Array, x: Array) -> Array:
         names, path = tuple(signals[k] for k in which), np.repeat(rows, x.shape[1])
         places = (2 * end - 1) * (QUARTER - x).ravel()
-        return group.values(names, paths.row[path], paths.angles(path, places), threads).reshape(-1, *x.shape)
+        return group.values(names, paths.row[path], paths.angles(path, places)).reshape(-1, *x.shape)
 
     probes = np.maximum(PROBE * step, LEAST_PROBE)[:, None] * [1.0, 0.1]
     probe, closer = np.moveaxis(values_at(np.arange(len(signals)), np.arange(len(step)), probes), 2, 0)

@@ -89,7 +89,7 @@ def _narrow(group: Group, angles: Array, names: tuple[str, str], both: Array, en
     return Approaches(row[narrow], angle[narrow], np.maximum(np.degrees(radians[narrow]), NARROWEST))
 
 
-def with_narrow_approaches(scene: Scene, threads: int | None = None) -> Array:
+def with_narrow_approaches(scene: Scene) -> Array:
     """Return the designs that may have narrow approaches, for a scene whose loads do not change with the angle.
 
     A design may have one if an even sample lies in or beside it, or if a near-toggle is narrow enough to hide it.
@@ -99,8 +99,8 @@ def with_narrow_approaches(scene: Scene, threads: int | None = None) -> Array:
     widths = tuple(width for _, width in scene.approaches())
     request = plan(scene.table, widths, scene.inputs.forms)
     least = {width: Reduction("least_sample", width) for width in widths}
-    reduced = reduce_rows(request, tuple(least.values()), scene.inputs.fields, grid, sizes, threads)
-    near_toggles = compute(scene, scene.grid(1), (NEAR_WIDTH, FAR_WIDTH), threads)
+    reduced = reduce_rows(request, tuple(least.values()), scene.inputs.fields, grid, sizes)
+    near_toggles = compute(scene, scene.grid(1), (NEAR_WIDTH, FAR_WIDTH))
     # at a sample δ away from an approach the width is √(w² + δ²), which is at most w + δ
     seen = [_below(reduced[least[width]][0], WIDE + np.radians(STEP)) for width in widths]
     hidden = [_below(field, NARROW_NEAR_TOGGLE) for field in near_toggles.values()]

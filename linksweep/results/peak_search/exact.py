@@ -70,23 +70,21 @@ FEW_SAMPLES_AT_ONCE = 4096
 turns."""
 
 
-def exact_peaks(
-    scene: Scene, signals: tuple[str, ...], assembly: Field, threads: int | None = None
-) -> dict[str, SignalPeak]:
+def exact_peaks(scene: Scene, signals: tuple[str, ...], assembly: Field) -> dict[str, SignalPeak]:
     """Return the peak of each signal over the continuous revolution, for every design; NaN where it has none."""
     fused = scene.steady and scene.table.limits is None
-    peaks = _fused_first(scene, signals, assembly, threads) if fused else _by_paths(scene, signals, threads)
-    _raise_to_poles(scene, peaks, threads)
+    peaks = _fused_first(scene, signals, assembly) if fused else _by_paths(scene, signals)
+    _raise_to_poles(scene, peaks)
     return peaks
 
 
 def peaks_within(
-    scene: Scene, signals: tuple[str, ...], part: Part, threads: int | None = None, designs: Array | None = None
+    scene: Scene, signals: tuple[str, ...], part: Part, designs: Array | None = None
 ) -> dict[str, SignalPeak]:
     """Return the peak of each signal between two angles [degree], ends included, of all designs or of these; angles of
     peaks lie between them, and are equal to an end where the peak stands there."""
-    peaks = _by_paths(scene, signals, threads, (partial(arcs_within, part),), designs)
-    _raise_to_poles(scene, peaks, threads, part, designs)
+    peaks = _by_paths(scene, signals, (partial(arcs_within, part),), designs)
+    _raise_to_poles(scene, peaks, part, designs)
     middle, half = 0.5 * (part[0] + part[1]), 0.5 * (part[1] - part[0])
     for *_, angle, _bound, _samples in peaks.values():
         away = np.mod(angle.values - middle + 0.5 * scene.period, scene.period) - 0.5 * scene.period
@@ -95,41 +93,33 @@ def peaks_within(
     return peaks
 
 
-def peaks_along_paths(
-    scene: Scene, signals: tuple[str, ...], designs: Array, threads: int | None = None
-) -> dict[str, SignalPeak]:
+def peaks_along_paths(scene: Scene, signals: tuple[str, ...], designs: Array) -> dict[str, SignalPeak]:
     """Return the peak of each signal over the revolution of these designs, from a search along paths alone."""
-    peaks = _by_paths(scene, signals, threads, designs=designs)
-    _raise_to_poles(scene, peaks, threads, designs=designs)
+    peaks = _by_paths(scene, signals, designs=designs)
+    _raise_to_poles(scene, peaks, designs=designs)
     return peaks
 
 
 def _raise_to_poles(
-    scene: Scene,
-    peaks: dict[str, SignalPeak],
-    threads: int | None,
-    part: Part | None = None,
-    designs: Array | None = None,
+    scene: Scene, peaks: dict[str, SignalPeak], part: Part | None = None, designs: Array | None = None
 ) -> None:
     if may_have_poles(scene, tuple(peaks)):
         designs = different(scene, (*peaks, "assembly")) if designs is None else designs
         if scene.table.limits is None:
             designs = designs_with_candidates(scene, designs, tuple(peaks))
         for _, group in assembled_groups(scene, tuple(peaks), designs=designs, at_once=FEW_SAMPLES_AT_ONCE):
-            raise_to_poles(group, peaks, threads, part)
-            _clear_of_rounding_errors(group, peaks, threads, part)
+            raise_to_poles(group, peaks, part)
+            _clear_of_rounding_errors(group, peaks, part)
 
 
-def _clear_of_rounding_errors(
-    group: Group, peaks: dict[str, SignalPeak], threads: int | None, part: Part | None
-) -> None:
+def _clear_of_rounding_errors(group: Group, peaks: dict[str, SignalPeak], part: Part | None) -> None:
     """Replace peaks of rounding errors beside singular places by those clear of these, or by limits there."""
     signals, places = tuple(peaks), singular_places(group, tuple(peaks))
     left_out = np.zeros((len(signals), len(places.row)), dtype=bool)
     among = np.ones((len(signals), len(group.designs)), dtype=bool)
     while among.any():  # each time clear of more places
         known = {signal: numbers_of(peak, group)[:2] for signal, peak in peaks.items()}
-        spoilt = spoilt_peaks(group, places, known, among, threads) & ~left_out
+        spoilt = spoilt_peaks(group, places, known, among) & ~left_out
         left_out |= spoilt
         among[...] = False
         for k in np.flatnonzero(spoilt.any(axis=1)):
@@ -139,18 +129,14 @@ def _clear_of_rounding_errors(
             put(peak, own, (np.full(len(designs), np.nan),) * len(SignalPeak._fields))
             parts = clear_of(places.angles_of(designs, left_out[k]), part, group.scene.period)
             paths = tuple(partial(arcs_within, ends) for ends in zip(*parts, strict=True))
-            follow(own, {signals[k]: peak}, paths, threads)
+            follow(own, {signals[k]: peak}, paths)
     if left_out.any():
-        raise_to_poles(group, peaks, threads, part)
-    raise_to_limits(group, peaks, places, threads, part)
+        raise_to_poles(group, peaks, part)
+    raise_to_limits(group, peaks, places, part)
 
 
 def _by_paths(
-    scene: Scene,
-    signals: tuple[str, ...],
-    threads: int | None,
-    paths: tuple[PathsOf, ...] = (),
-    designs: Array | None = None,
+    scene: Scene, signals: tuple[str, ...], paths: tuple[PathsOf, ...] = (), designs: Array | None = None
 ) -> dict[str, SignalPeak]:
     """Return peaks from a search along these paths, or along those for each design's kind of assembly; `designs` are
     searched along paths alone."""
@@ -158,44 +144,36 @@ def _by_paths(
     on_pieces = {}
     if designs is None and not paths and known_on_pieces(scene):
         on_pieces = {signal: peaks[signal] for signal in _turning(scene, signals)}
-        left = _follow_on_pieces(
-            scene, {regardless_of_jams(signal): peak for signal, peak in on_pieces.items()}, threads
-        )
-        _follow_all(scene, on_pieces, paths, threads, left)
-    _follow_all(
-        scene, {signal: peaks[signal] for signal in signals if signal not in on_pieces}, paths, threads, designs
-    )
+        left = _follow_on_pieces(scene, {regardless_of_jams(signal): peak for signal, peak in on_pieces.items()})
+        _follow_all(scene, on_pieces, paths, left)
+    _follow_all(scene, {signal: peaks[signal] for signal in signals if signal not in on_pieces}, paths, designs)
     if scene.quick.all:
         return peaks
     over_angle = {signal: peak for signal, peak in peaks.items() if changes(scene, (signal,))}
     return peaks | {signal: with_unknown_bound(peak) for signal, peak in over_angle.items()}
 
 
-def _follow_on_pieces(scene: Scene, peaks: dict[str, SignalPeak], threads: int | None) -> Array:
+def _follow_on_pieces(scene: Scene, peaks: dict[str, SignalPeak]) -> Array:
     """Write the peaks of designs of which pieces of their turns or arcs are enough; return the others."""
     designs = different(scene, (*peaks, "assembly"))
     assembly = all_at_once(scene, designs).assembly()
     turning = designs_without_jams(scene, designs[assembly == EVERYWHERE])
-    follow_pieces(scene, turning, peaks, threads)
+    follow_pieces(scene, turning, peaks)
     partly = designs[assembly == PARTLY]
-    followed = turning, np.setdiff1d(partly, follow_arcs(scene, partly, peaks, threads))
+    followed = turning, np.setdiff1d(partly, follow_arcs(scene, partly, peaks))
     return np.setdiff1d(designs, np.concatenate(followed))
 
 
 def _follow_all(
-    scene: Scene,
-    peaks: dict[str, SignalPeak],
-    paths: tuple[PathsOf, ...],
-    threads: int | None,
-    designs: Array | None = None,
+    scene: Scene, peaks: dict[str, SignalPeak], paths: tuple[PathsOf, ...], designs: Array | None = None
 ) -> None:
     """Search along these paths of designs, or along those for each design's kind of assembly; without `designs`, of
     all that differ."""
     for kind, group in assembled_groups(scene, tuple(peaks), designs=designs) if peaks else ():
-        follow(group, peaks, paths or paths_of(scene, kind), threads)
+        follow(group, peaks, paths or paths_of(scene, kind))
 
 
-def _fused_first(scene: Scene, signals: tuple[str, ...], assembly: Field, threads: int | None) -> dict[str, SignalPeak]:
+def _fused_first(scene: Scene, signals: tuple[str, ...], assembly: Field) -> dict[str, SignalPeak]:
     """Return peaks from the fused search of whole turns, or of their pieces, raised to those along paths where its
     samples do not suffice."""
     names, turning = (*signals, "assembly"), _turning(scene, signals)
@@ -207,24 +185,24 @@ def _fused_first(scene: Scene, signals: tuple[str, ...], assembly: Field, thread
     rubbing = rubbing_signals(scene, turning)
     divided = designs_without_jams(scene, whole) if rubbing else whole[:0]
     free = tuple(signal for signal in turning if signal not in rubbing) if divides(scene) else ()
-    peaks |= _fused(scene, free, searched, True, threads)
+    peaks |= _fused(scene, free, searched, True)
     others = tuple(signal for signal in turning if signal not in free)
     smooth = not (scene.jumps() or scene.mechanism.kinks())
-    peaks |= _fused(scene, others, _without(searched, divided), smooth, threads)
-    follow_pieces(scene, divided, {signal: peaks[signal] for signal in rubbing}, threads)
+    peaks |= _fused(scene, others, _without(searched, divided), smooth)
+    follow_pieces(scene, divided, {signal: peaks[signal] for signal in rubbing})
     whole = _without(whole, divided)
     if others and not smooth:
         for group in groups(scene, names, whole, FEW_SAMPLES_AT_ONCE):
-            follow(group, {signal: peaks[signal] for signal in others}, (about_breaks,), threads)
+            follow(group, {signal: peaks[signal] for signal in others}, (about_breaks,))
     if scene.approaches():
-        narrow = np.intersect1d(with_narrow_approaches(scene, threads), whole)
+        narrow = np.intersect1d(with_narrow_approaches(scene), whole)
         for group in groups(scene, names, narrow, FEW_SAMPLES_AT_ONCE):
-            follow(group, peaks, (about_approaches,), threads)
+            follow(group, peaks, (about_approaches,))
     if len(partly):
         constant = tuple(signal for signal in signals if signal not in turning)
-        left = follow_arcs(scene, partly, {signal: peaks[signal] for signal in turning}, threads)
+        left = follow_arcs(scene, partly, {signal: peaks[signal] for signal in turning})
         for own, some in ((turning, left), (constant, partly)):
-            _follow_all(scene, {signal: peaks[signal] for signal in own}, (), threads, some)
+            _follow_all(scene, {signal: peaks[signal] for signal in own}, (), some)
     return {signal: peaks[signal] for signal in signals}
 
 
@@ -285,9 +263,7 @@ def _highest_over(peak: SignalPeak, dims: Collection[str]) -> SignalPeak:
 # ----------------------------------------------------------------------------------------- the fused search
 
 
-def _fused(
-    scene: Scene, signals: tuple[str, ...], designs: Array, smooth: bool, threads: int | None
-) -> dict[str, SignalPeak]:
+def _fused(scene: Scene, signals: tuple[str, ...], designs: Array, smooth: bool) -> dict[str, SignalPeak]:
     """Return peaks of these designs from the search inside the kernel; those of others are NaN."""
     if not signals:
         return {}
@@ -295,7 +271,7 @@ def _fused(
     if len(designs) == math.prod(scene.inputs.sizes.values()):
         inputs = scene.inputs
         request = _between_samples(scene, signals)
-        results = find_peaks(request, signals, inputs.fields, inputs.sizes, smooth, sparse, threads)
+        results = find_peaks(request, signals, inputs.fields, inputs.sizes, smooth, sparse)
         return {signal: peak for some in results for signal, peak in _at_angles(scene, some).items()}
     peaks = {signal: nothing(field) for signal, field in empty(scene, signals).items()}
     places = ((TANGENT, (scene.mechanism.index, ONE)), (FAR, (scene.mechanism.index,)))
@@ -303,7 +279,7 @@ def _fused(
         rows, middle = np.arange(len(group.designs)), group.number(scene.mechanism.near_toggle_angle)
         names = (*signals, NEAR_WIDTH, FAR_WIDTH)
         request, inputs_of_group = group.one_by_one(scene.table.between_samples, names, rows, {}, places)
-        for some in find_peaks(request, signals, inputs_of_group, {ONE: len(rows)}, smooth, sparse, threads):
+        for some in find_peaks(request, signals, inputs_of_group, {ONE: len(rows)}, smooth, sparse):
             angles = angle_in_period(some.angle + middle, scene.period)
             for signal, *numbers in zip(some.signals, some.value, angles, some.beyond, some.evaluations, strict=True):
                 put(peaks[signal], group, tuple(numbers))

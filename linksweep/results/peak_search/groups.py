@@ -49,9 +49,9 @@ class Group(NamedTuple):
         places = {dim: at[rows] for dim, at in self.places.items()}
         return self._replace(designs=self.designs[rows], places=places, limits=self.limits and self.limits.some(rows))
 
-    def values(self, names: tuple[str, ...], rows: Array, angles: Array, threads: int | None = None) -> Array:
+    def values(self, names: tuple[str, ...], rows: Array, angles: Array) -> Array:
         """Return values (names, pairs) at pairs of a design of the group, by its row, and an angle [degree]."""
-        return quantities_at(self.scene, names, self.designs[rows], angles, threads)
+        return quantities_at(self.scene, names, self.designs[rows], angles)
 
     def of(self, name: str, rows: Array) -> Callable[[Array], Array]:
         """Return the function that evaluates a quantity of the designs in these rows at an angle [degree] of each."""

@@ -99,7 +99,7 @@ class Limits(NamedTuple):
         return self.zeros[:, parts].reshape(len(self.zeros), len(parts) * self.zeros.shape[2])  # of no design, too
 
 
-def assembly_of(scene: Scene, threads: int | None = None) -> Field:
+def assembly_of(scene: Scene) -> Field:
     """Return the assembly of each design: at every angle (0), at some (1) or at none (2)."""
     if scene.table.limits is not None:
         sizes, limits = limits_of(scene.unloaded)
@@ -107,7 +107,7 @@ def assembly_of(scene: Scene, threads: int | None = None) -> Field:
     sampled, grid = scene.at_one_angle, scene.grid(1)
     if scene.bare.mechanism.closes_everywhere:
         return zeros_of("assembly", sampled, grid)
-    return compute(sampled, grid, ("assembly",), threads)["assembly"]
+    return compute(sampled, grid, ("assembly",))["assembly"]
 
 
 @lru_cache(maxsize=2)

@@ -89,7 +89,7 @@ class Best(NamedTuple):
             np.copyto(own, numbers, where=higher)
 
 
-def follow_arcs(scene: Scene, designs: Array, peaks: dict[str, SignalPeak], threads: int | None) -> Array:
+def follow_arcs(scene: Scene, designs: Array, peaks: dict[str, SignalPeak]) -> Array:
     """Write the peaks of designs that move over part of a turn; return those for which pieces are not enough."""
     if not (peaks and len(designs) and known_on_pieces(scene)):
         return designs
@@ -102,7 +102,7 @@ def follow_arcs(scene: Scene, designs: Array, peaks: dict[str, SignalPeak], thre
         if not len(arcs.row):
             left.append(group.designs)
             continue
-        best, sure = _highest(group.some(arcs.row), arcs, signals, threads)
+        best, sure = _highest(group.some(arcs.row), arcs, signals)
         known = np.bincount(arcs.row, minlength=len(group.designs)) > 0
         known[arcs.row[~sure]] = known[every.row[every.length <= 0.0]] = False  # some close at one angle alone
         numbers = _highest_of_designs(arcs.row, best, len(known))
@@ -149,18 +149,18 @@ def _arcs(group: Group) -> Arcs:
     return Arcs(row[arc], start[arc] + cuts[arc, nth], start[arc] + cuts[arc, nth + 1])
 
 
-def _highest(group: Group, arcs: Arcs, signals: tuple[str, ...], threads: int | None) -> tuple[Best, Array]:
+def _highest(group: Group, arcs: Arcs, signals: tuple[str, ...]) -> tuple[Best, Array]:
     """Return the highest values of signals on arcs, one of each design of a group, and whether they are known."""
     both, probes = np.repeat([0, 1], len(PROBES)), np.multiply.outer(arcs.nearest, np.tile(PROBES, 2))
     angles = np.concatenate([arcs.beside(both, probes), (arcs.start + 0.5 * arcs.length)[:, None]], axis=1)
-    values = values_at(group, (*signals, "status"), angles, threads)
+    values = values_at(group, (*signals, "status"), angles)
     status = values[-1, :, -1]
     known = (status == 0.0) & (arcs.length > SHORTEST) & np.isfinite(values).all(axis=(0, 2))
     farther, closer, middle = values[:-1, :, :-1:2], values[:-1, :, 1:-1:2], np.abs(values[:-1, :, -1:])
     with np.errstate(invalid="ignore"):
         grows, change = known[:, None] & (np.abs(closer) > GROWTH * np.abs(farther)), np.abs(closer - farther)
         infinite = grows & (closer > SURELY * middle)
-        best = _on_pieces(group, arcs, signals, known & ~infinite.any(axis=2), threads)
+        best = _on_pieces(group, arcs, signals, known & ~infinite.any(axis=2))
         grows &= np.abs(closer) > LARGE * np.abs(best.value)[..., None]
         infinite |= grows & (closer > 0.0)
         limited = known[:, None] & ~grows & (closer + change >= best.value[..., None])
@@ -169,23 +169,23 @@ def _highest(group: Group, arcs: Arcs, signals: tuple[str, ...], threads: int | 
     for end, edge in enumerate((arcs.start, arcs.end)):
         best.raise_to(infinite[..., end] & (best.value < np.inf), np.inf, edge, 0.0)
     for end, edge in enumerate((arcs.start, arcs.end)):
-        limit, error, samples = _limits(group, arcs, end, signals, limited[..., end], threads)
+        limit, error, samples = _limits(group, arcs, end, signals, limited[..., end])
         limit = np.minimum(limit, closer[..., end] + change[..., end])
         best.raise_to(limit > best.value, limit, edge, error)
         best.samples[...] += samples
     return best, known | (status > LAST_UNJAMMED)
 
 
-def _on_pieces(group: Group, arcs: Arcs, signals: tuple[str, ...], needs: Array, threads: int | None) -> Best:
+def _on_pieces(group: Group, arcs: Arcs, signals: tuple[str, ...], needs: Array) -> Best:
     """Return the highest values of signals on pieces of arcs where they are needed (signal, arc); else −inf."""
     best = Best(np.full(needs.shape, -np.inf), *np.zeros((3, *needs.shape)))
     rows, which = np.flatnonzero(needs.any(axis=0)), np.flatnonzero(needs.any(axis=1))
     if len(rows):
         part, names = group.some(rows), tuple(signals[k] for k in which)
-        pieces = cut_at_kinks(part, _pieces(part, some_of(arcs, rows)), HALF, threads)
+        pieces = cut_at_kinks(part, _pieces(part, some_of(arcs, rows)), HALF)
         own = np.ix_(which, rows)
         levels = np.where(needs[own], -np.inf, np.inf)
-        highest = highest_on_pieces(part, pieces, names, HALF, threads, levels)
+        highest = highest_on_pieces(part, pieces, names, HALF, levels)
         for table, *of_signals in zip(best, *highest.values(), strict=True):
             table[own] = np.where(needs[own], of_signals, table[own])
     return best
@@ -215,14 +215,12 @@ def _inside(away: Array, least: Array | float, length: Array) -> Array:
         return np.where((away > least) & (away < length[:, None] - least), away, np.nan)
 
 
-def _limits(
-    group: Group, arcs: Arcs, end: int, signals: tuple[str, ...], needs: Array, threads: int | None
-) -> tuple[Array, Array, Array]:
+def _limits(group: Group, arcs: Arcs, end: int, signals: tuple[str, ...], needs: Array) -> tuple[Array, Array, Array]:
     """Return `limits_by_polynomials` at one end of each arc."""
 
     def at_distances(which: Array, rows: Array, x: Array) -> Array:
         angles = some_of(arcs, rows).beside(np.array([end]), x)
-        return values_at(group.some(rows), tuple(signals[k] for k in which), angles, threads)
+        return values_at(group.some(rows), tuple(signals[k] for k in which), angles)
 
     steps = _steps(group, arcs)[:, end] if needs.any() else np.zeros(len(arcs.row))
     return limits_by_polynomials(at_distances, steps, needs)

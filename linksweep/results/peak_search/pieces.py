@@ -130,12 +130,12 @@ def known_on_pieces(scene: Scene) -> bool:
     return divided and simple and machine.fastest <= FASTEST and (scene.steady or _loads(scene) is not None)
 
 
-def follow_pieces(scene: Scene, designs: Array, peaks: dict[str, SignalPeak], threads: int | None) -> None:
+def follow_pieces(scene: Scene, designs: Array, peaks: dict[str, SignalPeak]) -> None:
     """Write the peaks of designs, from a search of their pieces."""
     at_once = AT_ONCE if scene.steady else LOADED_AT_ONCE
     for whole in groups(scene, tuple(peaks), designs, at_once, at_once) if peaks else ():
         for half, group in _by_samples(whole):
-            highest = highest_on_pieces(group, _pieces(group, half, threads), tuple(peaks), half, threads)
+            highest = highest_on_pieces(group, _pieces(group, half), tuple(peaks), half)
             for signal, numbers in highest.items():
                 put(peaks[signal], group, numbers)
 
@@ -150,7 +150,7 @@ def _by_samples(group: Group) -> Iterator[tuple[int, Group]]:
 
 
 def highest_on_pieces(
-    group: Group, pieces: Pieces, signals: tuple[str, ...], half: int, threads: int | None, levels: Array | None = None
+    group: Group, pieces: Pieces, signals: tuple[str, ...], half: int, levels: Array | None = None
 ) -> Mapping[str, Numbers]:
     """Return the highest peak of each signal on the pieces of each design, which have so many samples on either side of
     the middle of each half turn; below a level (signal, design) only the highest sample."""
@@ -160,7 +160,7 @@ def highest_on_pieces(
     frame, period = group.number(group.scene.mechanism.near_toggle_angle), group.scene.period
     highest = {}
     levels = None if levels is None else levels[:, order]
-    peaks = find_peaks_on_pieces(request, signals, inputs, ONE, pieces.counts, half, threads, levels)
+    peaks = find_peaks_on_pieces(request, signals, inputs, ONE, pieces.counts, half, levels)
     for signal, peak in peaks.items():
         value, tangent, far, bound, samples, piece = peak
         at = np.arange(len(value)), np.nan_to_num(piece).astype(int)
@@ -172,20 +172,20 @@ def highest_on_pieces(
 # ------------------------------------------------------------------------------------------------- pieces
 
 
-def _pieces(group: Group, half: int, threads: int | None) -> Pieces:
+def _pieces(group: Group, half: int) -> Pieces:
     """Return the pieces of a group's designs, which end at all jumps and kinks."""
-    return cut_at_kinks(group, _between_jumps(group), half, threads)
+    return cut_at_kinks(group, _between_jumps(group), half)
 
 
-def cut_at_kinks(group: Group, pieces: Pieces, half: int, threads: int | None) -> Pieces:
+def cut_at_kinks(group: Group, pieces: Pieces, half: int) -> Pieces:
     """Return pieces between jumps, cut at all kinks, with their directions of sliding."""
-    pieces = pieces._replace(directions=_directions(group, pieces, threads))
+    pieces = pieces._replace(directions=_directions(group, pieces))
     for name in group.scene.mechanism.kinks():
-        pieces = _cut_at_zeros(group, pieces, name, half, threads)
+        pieces = _cut_at_zeros(group, pieces, name, half)
     return pieces
 
 
-def _directions(group: Group, pieces: Pieces, threads: int | None) -> Array:
+def _directions(group: Group, pieces: Pieces) -> Array:
     """Return the directions of sliding (direction, design, piece): those near the narrower near-toggle at an end of
     each piece, or in its middle."""
     names, shape = group.scene.mechanism.directions(), (len(pieces.counts), pieces.start.shape[1])
@@ -194,20 +194,20 @@ def _directions(group: Group, pieces: Pieces, threads: int | None) -> Array:
     start, end = map(pieces.tangents, (pieces.start, pieces.end))
     at_start, at_end = _widths(pieces, start, end, *group.near_toggles())
     near_end = np.where(at_end < at_start, 1.0 - NEAR_END, NEAR_END)
-    directions = _directions_at(group, pieces, np.where(np.minimum(at_start, at_end) < 1.0, near_end, 0.5), threads)
+    directions = _directions_at(group, pieces, np.where(np.minimum(at_start, at_end) < 1.0, near_end, 0.5))
     if (directions == 0.0).any():
-        directions = np.where(directions == 0.0, _directions_at(group, pieces, np.array([[0.5]]), threads), directions)
+        directions = np.where(directions == 0.0, _directions_at(group, pieces, np.array([[0.5]])), directions)
     return directions
 
 
-def _directions_at(group: Group, pieces: Pieces, share: Array, threads: int | None) -> Array:
+def _directions_at(group: Group, pieces: Pieces, share: Array) -> Array:
     """Return the directions of sliding (direction, design, piece) at a share of the way along each piece."""
     scene, shape = group.scene, (len(pieces.counts), pieces.start.shape[1])
     names, angle = scene.mechanism.directions(), pieces.start + share * (pieces.end - pieces.start)
     places = {TANGENT: pieces.tangents(angle), FAR: pieces.half}
     own = {name: _of_pieces(values) for name, values in places.items()}
     request, inputs = group.one_by_one(scene.table.between_samples, names, np.arange(shape[0]), own, ())
-    values = evaluate(request, inputs, scene.grid(1), dict(zip((ONE, PIECE), shape, strict=True)), threads)
+    values = evaluate(request, inputs, scene.grid(1), dict(zip((ONE, PIECE), shape, strict=True)))
     return np.stack([np.broadcast_to(aligned(values[name], (ONE, PIECE)), shape) for name in names])
 
 
@@ -264,12 +264,12 @@ def between(cuts: Array, last: Array, designs: int) -> Pieces:
     return Pieces(start, end, half, np.broadcast_to(counts, designs), np.empty((0, designs, 0)))
 
 
-def _cut_at_zeros(group: Group, pieces: Pieces, name: str, half: int, threads: int | None) -> Pieces:
+def _cut_at_zeros(group: Group, pieces: Pieces, name: str, half: int) -> Pieces:
     """Return the pieces, cut at the zeros of a quantity."""
     request, inputs = _evaluated(group, pieces, (name,))
     if group.scene.mechanism.index not in request.outputs[name].dims:  # as the force on a guide that bears nothing
         return pieces
-    tangent, far = zeros_of_pieces(request, inputs, ONE, pieces.counts, half, threads)
+    tangent, far = zeros_of_pieces(request, inputs, ONE, pieces.counts, half)
     zeros = np.nonzero(np.isfinite(tangent))
     if not len(zeros[0]):
         return pieces
@@ -295,18 +295,18 @@ def _angles(pieces: Pieces, inputs: Fields, at: tuple[Array, ...], tangent: Arra
 # ---------------------------------------------------------------------------------------------- evaluation
 
 
-def values_at(group: Group, names: tuple[str, ...], angles: Array, threads: int | None) -> Array:
+def values_at(group: Group, names: tuple[str, ...], angles: Array) -> Array:
     """Return values (name, design, nth) of quantities at angles (design, nth) from the near-toggle [degree]: at the
     starts of pieces."""
     scene, known = group.scene, np.full(len(angles), angles.shape[1])
     half = np.floor(np.mod(angles + 90.0, 360.0) / 180.0)
     pieces = Pieces(angles, angles + SHORTEST, half, known, np.empty((0, *angles.shape)))
     if scene.mechanism.directions():
-        pieces = pieces._replace(directions=_directions_at(group, pieces, np.zeros((1, 1)), threads))
+        pieces = pieces._replace(directions=_directions_at(group, pieces, np.zeros((1, 1))))
     table, own = _on_own_pieces(group, pieces)
     start = {ALONG: Field((), np.zeros(())), END: Field((), np.zeros(()))}
     request, inputs = group.one_by_one(table, names, np.arange(len(angles)), own | start, ())
-    values = evaluate(request, inputs, scene.grid(1), dict(zip((ONE, PIECE), angles.shape, strict=True)), threads)
+    values = evaluate(request, inputs, scene.grid(1), dict(zip((ONE, PIECE), angles.shape, strict=True)))
     return np.stack([np.broadcast_to(aligned(values[name], (ONE, PIECE)), angles.shape) for name in names])
 
 

@@ -106,9 +106,7 @@ class Rules(NamedTuple):
     blur: Array
 
 
-def means(
-    scene: Any, powers: tuple[Power, ...], pace: tuple[str, ...], part: Part | None, threads: int | None
-) -> dict[Power, Field]:
+def means(scene: Any, powers: tuple[Power, ...], pace: tuple[str, ...], part: Part | None) -> dict[Power, Field]:
     """Return the mean over time of each power of a quantity, over the cycle or a part of it, for every design; NaN
     where no angle is ok.
 
@@ -116,7 +114,7 @@ def means(
     """
     weighted = {(power, True): Integrand((power[0], *pace), partial(_weighted, power[1])) for power in powers}
     times = {(power, False): Integrand((power[0], *pace), _time) for power in powers}
-    totals = integrals(scene, weighted | times, part, threads)
+    totals = integrals(scene, weighted | times, part)
     with np.errstate(invalid="ignore", divide="ignore"):
         mean = {power: totals[power, True].values / totals[power, False].values for power in powers}
     return {power: Field(totals[power, True].dims, values) for power, values in mean.items()}
@@ -131,18 +129,16 @@ def _time(value: Array, pace: Array | float = 1.0) -> Array:
     return np.where(np.isfinite(value / pace), 1.0 / np.abs(pace), 0.0)
 
 
-def cycle_time(scene: Scene, threads: int | None = None) -> xr.DataArray:
+def cycle_time(scene: Scene) -> xr.DataArray:
     """Return the time that the crank takes for the whole cycle [s]."""
     if not scene.changes_speed:
         return xr.DataArray(np.radians(scene.period) / abs(scene.omega2))
     time = Integrand((scene.mechanism.pace,), lambda pace: np.radians(1.0) / abs(pace))
-    (field,) = integrals(scene, {"time": time}, threads=threads).values()
+    (field,) = integrals(scene, {"time": time}).values()
     return xr.DataArray(field.values, dims=field.dims)
 
 
-def integrals(
-    scene: Any, integrands: Mapping[Key, Integrand], part: Part | None = None, threads: int | None = None
-) -> dict[Key, Field]:
+def integrals(scene: Any, integrands: Mapping[Key, Integrand], part: Part | None = None) -> dict[Key, Field]:
     """Integrate over the crank angle [degree], the whole cycle or between two angles, for every design.
 
     Where no angle of a design is ok, its integrals are NaN or 0.
@@ -153,24 +149,22 @@ def integrals(
     for kind, group in assembled_groups(scene, names, (PARTLY, EVERYWHERE)):
         paths = arcs(group) if kind == PARTLY and arc_ends(group) else turns(group)
         paths = paths if part is None else within(paths, part, scene)
-        _integrate(group, totals, integrands, paths, threads)
+        _integrate(group, totals, integrands, paths)
     return totals
 
 
-def _integrate(
-    group: Group, totals: Mapping[Key, Field], integrands: Mapping[Key, Integrand], paths: Paths, threads: int | None
-) -> None:
+def _integrate(group: Group, totals: Mapping[Key, Field], integrands: Mapping[Key, Integrand], paths: Paths) -> None:
     """Integrate along the paths of a group's designs, and store the totals of each design."""
     if not np.any(paths.cuts[:, 1:] > paths.cuts[:, :-1]):
         return
     with np.errstate(invalid="ignore"):  # inf − inf is NaN: unbounded both ways
-        along = _integrals(group, tuple(integrands.values()), paths, threads)
+        along = _integrals(group, tuple(integrands.values()), paths)
         sums = _by_owner(along, paths.row, len(group.designs))
     for field, total in zip(totals.values(), sums, strict=True):
         field.values[tuple(group.places[dim] for dim in field.dims)] = total if field.dims else total[0]
 
 
-def _integrals(group: Group, integrands: tuple[Integrand, ...], paths: Paths, threads: int | None) -> Array:
+def _integrals(group: Group, integrands: tuple[Integrand, ...], paths: Paths) -> Array:
     """Return the integrals (integrand, path) over each path.
 
     A piece is halved for the integrands alone whose rules disagree there, so that an integral has the same bits
@@ -181,7 +175,7 @@ def _integrals(group: Group, integrands: tuple[Integrand, ...], paths: Paths, th
     total = np.zeros((len(integrands), count))
     pending = np.ones((len(integrands), len(pieces.path)), dtype=bool)
     for halvings in range(HALVINGS):
-        rules = _rules(group, integrands, paths, pieces, threads)
+        rules = _rules(group, integrands, paths, pieces)
         scale = np.maximum(_by_owner(rules.size, pieces.path, count), 1e-300) if scale is None else scale
         unsettled = pending & _disagree(rules, scale[:, pieces.path], beside_toggles=paths.middle is not None)
         if halvings >= FIRST_DIVERGENCE:
@@ -237,13 +231,13 @@ def _first_pieces(paths: Paths) -> Pieces:
     return Pieces(path, paths.cuts[path, piece], paths.cuts[path, piece + 1])
 
 
-def _rules(group: Group, integrands: tuple[Integrand, ...], paths: Paths, pieces: Pieces, threads: int | None) -> Rules:
+def _rules(group: Group, integrands: tuple[Integrand, ...], paths: Paths, pieces: Pieces) -> Rules:
     """Integrate each piece by both rules."""
     middle, half = 0.5 * (pieces.start + pieces.end), 0.5 * (pieces.end - pieces.start)
     x = (middle[:, None] + half[:, None] * POINTS).ravel()
     path = np.repeat(pieces.path, len(POINTS))
     names = tuple(dict.fromkeys(name for integrand in integrands for name in integrand.names))
-    values = dict(zip(names, group.values(names, paths.row[path], paths.angles(path, x), threads), strict=True))
+    values = dict(zip(names, group.values(names, paths.row[path], paths.angles(path, x)), strict=True))
     with np.errstate(all="ignore"):  # a NaN has a height of 0
         rows = [integrand.height(*(values[name] for name in integrand.names)) for integrand in integrands]
     heights = np.stack(rows).reshape(len(rows), len(half), len(POINTS))

@@ -68,7 +68,7 @@ def sector_peaks(scene: Scene, signals: tuple[str, ...], sectors: int) -> tuple[
     for rows, _, group in _by_assembly(scene, signals, designs):
         paths = pieces(group)
         lowest = np.full((len(paths.row), len(signals)), -np.inf)
-        heights, angles, *_ = highest(group, signals, paths, lowest, None)
+        heights, angles, *_ = highest(group, signals, paths, lowest)
         sector = (in_period(paths.middle, scene.period) * (sectors / scene.period)).astype(int)
         for k in range(len(signals)):
             order = np.argsort(heights[:, k])  # the highest of a sector is written last

@@ -135,7 +135,7 @@ def _look(scene: Scene, limits: tuple[Limit, ...], designs: Array, cuts: Events)
     ends = np.stack([np.take_along_axis(numbers, order, axis=1) for numbers in (places, widths)])
     signals = [(k, KINDS[limit.zeros]) for k, limit in enumerate(limits) for _ in limit.signals]
     parts, kinds = map(np.array, zip(*signals, strict=True))
-    numbers, left = dips_and_zeros(*_evaluated(scene, limits, designs), ONE, kinds, ends, None)
+    numbers, left = dips_and_zeros(*_evaluated(scene, limits, designs), ONE, kinds, ends)
     row, nth = np.nonzero(np.isfinite(numbers[samples.PLACE]))
     place, half, signal, width = numbers[:, row, nth]
     return Events(row, place + samples.FAR_HALF * half, parts[signal.astype(int)], width), left

@@ -21,7 +21,7 @@ from linksweep.scene.scene import Scene
 
 
 def of_free_angles(
-    scene: Scene, peaks: dict[str, SignalPeak], assembly: Field, part: Part | None, threads: int | None
+    scene: Scene, peaks: dict[str, SignalPeak], assembly: Field, part: Part | None
 ) -> dict[str, SignalPeak]:
     """Return peaks, those of motion at free angles alone where friction jams all designs that share one.
 
@@ -36,10 +36,7 @@ def of_free_angles(
     sizes, names = sampled.inputs.sizes, tuple(motion.values())
     moves = np.broadcast_to(aligned(assembly, tuple(sizes)) < NEVER, tuple(sizes.values()))
     designs = np.flatnonzero(jammed & moves)
-    if part is None:
-        searched = peaks_along_paths(scene, names, designs, threads)
-    else:
-        searched = peaks_within(scene, names, part, threads, designs)
+    searched = peaks_along_paths(scene, names, designs) if part is None else peaks_within(scene, names, part, designs)
     of_jammed = of_designs_that_share(sampled, {signal: searched[name] for signal, name in motion.items()})
     free = peaks_where(Field(tuple(sizes), moves & ~jammed), {signal: peaks[signal] for signal in motion})
     return peaks | {signal: _filled(free[signal], of_jammed[signal]) for signal in motion}

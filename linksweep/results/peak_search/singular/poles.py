@@ -92,7 +92,7 @@ def _poles_in_closed_form(scene: Scene) -> Iterator[tuple[tuple[str, ...], Array
             yield dims, angles
 
 
-def poles(group: Group, signals: tuple[str, ...], threads: int | None = None) -> tuple[Array, Array, Array]:
+def poles(group: Group, signals: tuple[str, ...]) -> tuple[Array, Array, Array]:
     """Return the possible poles of these designs, where they can be assembled, and the signals that are inf there.
 
     Three arrays: of each pole the row of its design in the group and its angle [degree], and whether each signal is inf
@@ -105,7 +105,7 @@ def poles(group: Group, signals: tuple[str, ...], threads: int | None = None) ->
     angles = angle[:, None, None] + step[:, None, None] * side[:, None] * BESIDE
     rows = np.repeat(row, angles[:1].size)
     with np.errstate(invalid="ignore"):
-        values = group.values(signals, rows, angles.ravel(), threads).reshape(len(signals), *angles.shape)
+        values = group.values(signals, rows, angles.ravel()).reshape(len(signals), *angles.shape)
         infinite = _grows_as_a_power(np.abs(values)) & (values[..., 0] > 0.0)
     return row, angle, np.any(infinite, axis=-1).T
 

@@ -69,9 +69,7 @@ def singular_places(group: Group, signals: tuple[str, ...]) -> Singular:
     return Singular(np.concatenate([row, design]), np.concatenate([angle, toggles[design, which]]), ends_arc)
 
 
-def spoilt_peaks(
-    group: Group, places: Singular, peaks: dict[str, tuple[Array, ...]], among: Array, threads: int | None = None
-) -> Array:
+def spoilt_peaks(group: Group, places: Singular, peaks: dict[str, tuple[Array, ...]], among: Array) -> Array:
     """Return which signals have peaks that consist of rounding errors, and close to which of these places (signal,
     place). `peaks` are the values and the angles [degree] of each signal's peaks, those `among` (signal, design) new.
 
@@ -88,7 +86,7 @@ def spoilt_peaks(
         for k in np.unique(signal):
             own = signal == k
             rows = np.repeat(places.row[place[own]], math.prod(beside.shape[1:]))
-            values[own] = group.values((signals[k],), rows, angles[own].ravel(), threads).reshape(values[own].shape)
+            values[own] = group.values((signals[k],), rows, angles[own].ravel()).reshape(values[own].shape)
         return values
 
     suspect = among[:, places.row] & (np.abs(away) < CLEAR) & (np.isfinite(value) | places.ends_arc & (value == np.inf))
