@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from linksweep.base.fields import of_kind, parameter
+from linksweep.base.frozen import cached_beside
 from linksweep.base.validate import Number
 from linksweep.chains.equations import add_force
 from linksweep.chains.on_crank import rpr
@@ -173,6 +174,7 @@ class InvertedSliderCrank(SingleDyad):
         crank = first_moment(self.crank) + self.block_mass * self.crank.length
         return {"crank": -crank, "rocker": -rocker_and_block}
 
+    @cached_beside
     def jumps(self) -> tuple[Number, ...]:
         """Return the crank angles [degree] at which friction jumps: where the block turns round on its line."""
         if not np.any(self.friction):

@@ -242,7 +242,7 @@ class Mechanism(ByContent, ABC):
         reasons = {"friction": self.rubs, "pressure angles of gears": bool(self.teeth)}
         return " and ".join(reason for reason, holds in reasons.items() if holds)
 
-    @property
+    @cached_property
     def rubs(self) -> bool:
         """True where some part slides with friction."""
         return any(mu != 0.0 if type(mu) is float else np.any(mu) for mu in self.frictions.values())

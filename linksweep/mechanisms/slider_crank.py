@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from linksweep.base.fields import of_kind, parameter
+from linksweep.base.frozen import cached_beside
 from linksweep.base.validate import Number
 from linksweep.chains.chain import Own
 from linksweep.chains.equations import equations
@@ -156,6 +157,7 @@ class SliderCrank(SingleDyad):
         crank_and_rod = equations(TOPOLOGY, {driven: self.drives[drive]})[:6]
         return (*crank_and_rod, *newton_euler_equations(4, {"F43": (-1.0, "R34"), "F14": (1.0, "R34")}, "T14"))
 
+    @cached_beside
     def jumps(self) -> tuple[Number, ...]:
         """Return the crank angles [degree] at which friction jumps: dead centres, where the slider turns round."""
         return self.dead_centres() if np.any(self.friction) else ()
