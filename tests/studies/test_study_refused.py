@@ -105,15 +105,17 @@ def test_two_simultaneous_studies_are_refused(stopped):
 
 @pytest.mark.parametrize(
     ("options", "message"),
-    [
-        ({"of": ["F33"]}, "of: nothing is named 'F33'"),
-        ({"chunk": 0}, "chunk = 0: must be a whole number, 1 or more"),
-        ({"threads": 1.5}, "threads = 1.5: must be a whole number, 1 or more"),
-    ],
+    [({"of": ["F33"]}, "of: nothing is named 'F33'"), ({"chunk": 0}, "chunk = 0: must be a whole number, 1 or more")],
 )
 def test_a_bad_request_is_refused_before_writing(options, message, tmp_path):
     assert refused(ls.study, many(), tmp_path / "study.nc", **options).startswith(message)
     assert refused(ls.study, "press", tmp_path / "study.nc", **options).startswith("scene is a str: must be a Scene")
+    assert os.listdir(tmp_path) == []
+
+
+def test_a_bad_number_of_threads_is_refused_before_writing(tmp_path):
+    bad = "threads = 1.5: must be a whole number, 1 or more"
+    assert refused(ls.study, many(), tmp_path / "study.nc", threads=1.5) == bad
     assert os.listdir(tmp_path) == []
 
 
