@@ -65,8 +65,8 @@ def _against_itself(
     every = (force, *(derivative_of(force, path) for path in paths))
     plain, slopes = f"{name}, {force}", f"{name}, {force} and {words}"
     with way("compiled"):
-        alone = kernel_of(partial(compute, sampled, grid, (force,), 1))
-        both = kernel_of(partial(compute, own, grid, every, 1))
+        alone = kernel_of(partial(compute, sampled, grid, (force,)))
+        both = kernel_of(partial(compute, own, grid, every))
         timed = race({slopes: both.call, plain: alone.call}, size, angles)
     ours, theirs = _instructions(own, every), _instructions(sampled, (force,))
     return timed.row(SHARE, slopes, plain, goal, note="; ".join([f"{ours} against {theirs} instructions", *notes]))

@@ -16,6 +16,7 @@ from benchmarks.timing import Call
 from linksweep.engine import run
 from linksweep.engine.linear.solve import unknowns
 from linksweep.engine.peaks import laid_out
+from linksweep.engine.threads import at_most
 from linksweep.results.system import sampled_systems
 
 
@@ -57,7 +58,11 @@ def eliminations(scene: ls.Scene, angles: int) -> tuple[Call, Call]:
     """Return two solutions of a scene's square systems, by linksweep from their terms and by numpy from their matrices:
     no kinematics, no labels."""
     grid = scene.grid(angles)
-    systems, page = sampled_systems(scene.at(grid), grid, 1), ls.system(scene, grid.angles)
+    systems, page = sampled_systems(scene.at(grid), grid), ls.system(scene, grid.angles)
     matrix, rhs = (np.ascontiguousarray(page[part].values) for part in ("matrix", "rhs"))
-    ours = partial(unknowns, systems.structure, systems.values, False, 1)
+
+    def ours() -> np.ndarray:
+        with at_most(1):
+            return unknowns(systems.structure, systems.values)
+
     return ours, lambda: np.linalg.solve(matrix, rhs[..., None])
