@@ -17,7 +17,7 @@ P = ParamSpec("P")
 T = TypeVar("T")
 
 _most: ContextVar[int | None] = ContextVar("most threads", default=None)
-"""Largest number of threads at present; None for all cores."""
+"""Largest number of threads at present; None for as many as there are cores."""
 
 
 def limits_threads(function: Callable[P, T]) -> Callable[P, T]:
@@ -50,7 +50,18 @@ def at_most(threads: int) -> Iterator[None]:
 
 def most_threads() -> int:
     """Return the largest number of threads: the limit, or the number of cores that this process may use."""
-    return _most.get() or (len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1)
+    return _most.get() or _cores()
+
+
+def threads_of_a_task() -> int:
+    """Return the number of threads of a task that runs later or elsewhere, beside others: the limit, or 1."""
+    return _most.get() or 1
+
+
+def _cores() -> int:
+    if hasattr(os, "sched_getaffinity"):  # of fewer cores than the machine has, on a cluster or by taskset
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
 
 
 def over_threads(work: Callable[[int, int], None], length: int, workers: int) -> None:

@@ -14,6 +14,7 @@ from typing import Any, ParamSpec
 import numpy as np
 import xarray as xr
 
+from linksweep.engine.threads import threads_of_a_task
 from linksweep.engine.trace.plan import plan
 from linksweep.results.dataset import design_coordinates, kept_beside
 from linksweep.scene.at_sections import with_sections
@@ -95,26 +96,26 @@ def _requested(arguments: tuple[Any, ...], options: Mapping[str, Any]) -> Any:
 
 
 def _lazily(
+    computed: Callable,
     function: Callable,
-    of_one: Callable,
     scene: Scene,
     arguments: tuple[Any, ...],
     options: dict[str, Any],
     of_samples: bool,
 ) -> xr.Dataset:
-    """Return the lazy result of a decorated function; `of_one` is the function itself, which computes at once."""
+    """Return the lazy result of a decorated function, `computed`, from the function itself of one design."""
     scene = in_memory(scene, [path for path in lazy_paths(scene) if scene.arrays[path].dims in ((), (path,))])
     if not lazy_paths(scene):
-        return function(scene, *arguments, **options)
-    options["threads"] = 1 if options.get("threads") is None else options["threads"]
-    one, order, deciding = _looks(lambda scene: of_one(scene, *arguments, **options), scene)
+        return computed(scene, *arguments, **options)
+    options["threads"] = threads_of_a_task() if options.get("threads") is None else options["threads"]
+    one, order, deciding = _looks(lambda scene: function(scene, *arguments, **options), scene)
     known = _known(scene, one)
     dims: Dims = {name: v.dims for name, v in one.variables.items() if name not in known}
     dims = dims if of_samples else {**dims, "status": order}
     shared = {name: [dim for dim in deciding if dim not in own] for name, own in dims.items()}
     numbers = _numbers(scene, uncut=() if of_samples else {dim for beyond in shared.values() for dim in beyond})
     spread = {name: (*own, *shared[name]) for name, own in dims.items()}
-    task = Task(stand_in(scene), function, arguments, options, spread, dict(one.sizes), list(one.indexes))
+    task = Task(stand_in(scene), computed, arguments, options, spread, dict(one.sizes), list(one.indexes))
     blocks = xr.map_blocks(_compute, numbers, kwargs={"task": task}, template=_template(one, spread, known, numbers))
     variables = known | {name: _any(blocks[name].variable, shared[name]) for name in dims}
     data, coordinates = ({name: variables[name] for name in part} for part in (one.data_vars, one.coords))

@@ -14,6 +14,7 @@ from typing import Any
 import xarray as xr
 
 from linksweep.base.validate import quote, refuse
+from linksweep.engine.threads import threads_of_a_task
 from linksweep.results.peaks import peaks
 from linksweep.scene.designs.selection import selected
 from linksweep.studies.job import Job
@@ -42,9 +43,7 @@ def client_of(client: Any) -> Any:
         return None
 
 
-def on_cluster(
-    client: Any, job: Job, numbers: Iterable[int], threads: int | None
-) -> Generator[tuple[int, xr.Dataset], None, None]:
+def on_cluster(client: Any, job: Job, numbers: Iterable[int]) -> Generator[tuple[int, xr.Dataset], None, None]:
     """Yield number and peaks of these chunks, as they are finished."""
     from distributed import as_completed
 
@@ -54,7 +53,7 @@ def on_cluster(
     def send() -> None:
         for number in remaining:
             part = selected(job.scene, job.blocks[number])
-            future = client.submit(peaks, part, job.of, threads=threads or 1, pure=False, **job.options)
+            future = client.submit(peaks, part, job.of, threads=threads_of_a_task(), pure=False, **job.options)
             under_way[future] = number
             done.add(future)
             if len(under_way) >= AHEAD * sum(client.nthreads().values()):

@@ -19,7 +19,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.base.validate import refuse
-from linksweep.engine.threads import limits_threads
+from linksweep.engine.threads import limits_threads, threads_of_a_task
 from linksweep.files.atomic import ending_of, target_of
 from linksweep.files.netcdf import loaded, save_dataset
 from linksweep.files.progress import progress_bar
@@ -144,7 +144,7 @@ def screen(
             refuse(other_screening(target, sealed(target, SAVED), manifest))
             return loaded(target)
         progress = Progress(target.with_name(target.name + ".progress"), manifest)
-    tally = _run(task, int(n), int(chunk or usual_chunk(scene, options)), threads, client, progress)
+    tally = _run(task, int(n), int(chunk or usual_chunk(scene, options)), client, progress)
     ds = _result(task, tally, int(n), further)
     if target is not None and progress is not None:
         save_dataset(ds, target, manifest)
@@ -155,11 +155,11 @@ def screen(
 # ---------------------------------------------------------------------------------------- the run
 
 
-def _run(task: Screening, n: int, chunk: int, threads: int | None, client: Any, progress: Progress | None) -> Tally:
+def _run(task: Screening, n: int, chunk: int, client: Any, progress: Progress | None) -> Tally:
     """Return the tally of all designs, from where the progress file stands."""
     state = (progress and progress.load()) or (0, _nothing(task))  # one name, so that no stop can divide it
     starts = range(state[0], n, chunk)
-    parts = _in_turn(task, starts, n) if client is None else _on_cluster(client, task, starts, n, threads)
+    parts = _in_turn(task, starts, n) if client is None else _on_cluster(client, task, starts, n)
     written = monotonic()
     try:
         with progress_bar(n, "designs") as bar, contextlib.closing(parts):
@@ -192,9 +192,7 @@ def _in_turn(task: Screening, starts: range, n: int) -> Generator[Tally, None, N
         yield task.tally(start, min(start + starts.step, n))
 
 
-def _on_cluster(
-    client: Any, task: Screening, starts: range, n: int, threads: int | None
-) -> Generator[Tally, None, None]:
+def _on_cluster(client: Any, task: Screening, starts: range, n: int) -> Generator[Tally, None, None]:
     """Yield the tallies of chunks in their order, computed by the workers of a cluster."""
     under_way: deque[Any] = deque()
     remaining = iter(starts)
@@ -203,7 +201,7 @@ def _on_cluster(
         while True:
             for start in remaining:
                 last = min(start + starts.step, n)
-                under_way.append(client.submit(tally_there, sent, start, last, threads=threads or 1, pure=False))
+                under_way.append(client.submit(tally_there, sent, start, last, threads=threads_of_a_task(), pure=False))
                 if len(under_way) >= AHEAD * sum(client.nthreads().values()):
                     break
             if not under_way:

@@ -131,7 +131,7 @@ def study(
         folder = _folder(target)
         with _advising(folder), partial(folder, _manifest(job)) as kept:
             if not target.exists():  # another process may have finished it
-                _run(job, kept, target, threads, client)
+                _run(job, kept, target, client)
             kept.remove()
     return _finished(target, job)
 
@@ -175,11 +175,11 @@ def _folder(target: Path) -> Path:
     return target.with_name(short + ".partial")
 
 
-def _run(job: Job, kept: Partial, target: Path, threads: int | None, client: Any) -> None:
+def _run(job: Job, kept: Partial, target: Path, client: Any) -> None:
     """Compute missing chunks, assemble the file, and rename it."""
 
     def compute(numbers: Iterable[int]) -> Generator[int, None, None]:
-        results = job.chunks(numbers) if client is None else on_cluster(client, job, numbers, threads)
+        results = job.chunks(numbers) if client is None else on_cluster(client, job, numbers)
         with contextlib.closing(results):
             for number, ds in results:
                 kept.keep(number, ds.drop_vars(ds.coords).assign_attrs(scene=""))  # the file has the whole scene

@@ -16,6 +16,7 @@ import xarray as xr
 from studies import ENGINE, PRESS, SCENES, gas, grid, many, refused, sliding, stopped_study
 
 import linksweep as ls
+from linksweep.results import dask_blocks
 from linksweep.scene.parameters import replaced
 from linksweep.studies import cluster as cluster_module
 from linksweep.studies.job import Job
@@ -66,6 +67,18 @@ def test_a_lazy_sweep_equals_the_eager_one(scene):
     outcome, expected = ls.sweep(lazy(scene), 48), ls.sweep(scene, 48)
     assert all(values.chunks is not None for values in outcome.data_vars.values())
     assert_equal(outcome, expected)
+
+
+@pytest.mark.parametrize(("limit", "of_each"), [({}, 1), ({"threads": 2}, 2)])
+@pytest.mark.parametrize("function", [ls.sweep, ls.breakdown])
+def test_a_limit_of_threads_holds_for_each_block(function, limit, of_each, monkeypatch):
+    """Blocks are computed beside each other, when the function that asked for them has ended."""
+    seen, compute = set(), dask_blocks.Task.__call__
+    monkeypatch.setattr(
+        dask_blocks.Task, "__call__", lambda task, x: seen.add(task.options["threads"]) or compute(task, x)
+    )
+    computed(function(lazy(many(), 20), theta2=8, of=["F32"], **limit))
+    assert seen == {of_each}
 
 
 @pytest.mark.parametrize("scene", [name for name in SCENES if name != "one"])
