@@ -46,15 +46,20 @@ def as_data(scene: ls.Scene, theta2: float) -> Linkages:
     )
 
 
+def solved(scene: ls.Scene, theta2: float) -> tuple[dict[str, float], int]:
+    """Return all that the reference names, computed in 50 digits, and its status."""
+    solution = multibody.solve(as_data(scene, theta2))
+    return {name: float(values[0]) for name, values in named(solution).items()}, int(solution.status[0])
+
+
 def largest_error(scene: ls.Scene, theta2: float) -> float:
     """Return the largest error of all that both name, relative to the largest number of its kind; and at least that
     of a status that differs."""
-    solution = multibody.solve(as_data(scene, theta2))
-    exact = {name: float(values[0]) for name, values in named(solution).items()}
+    exact, status = solved(scene, theta2)
     names = [name for name in exact if name in scene.table.quantity.keys() - {"theta2", "omega2", "alpha2"}]
     cycle = ls.sweep(scene, [theta2], of=names)
-    if cycle.status[0] or solution.status[0]:
-        return float(cycle.status[0] != solution.status[0])
+    if cycle.status[0] or status:
+        return float(cycle.status[0] != status)
     assert {f"F{i}{j}x" for i, j in scene.mechanism.chain.joints.values()} <= {*names}
     size = {"F": 0.0, "T": 0.0, "a": 1.0, "v": 0.1, "o": 1.0, "x": 0.1}
     for name in names:

@@ -27,9 +27,9 @@ SPOILT = 1e-9
 """Least error, relative to a quantity, that tells a peak of rounding errors from one of the quantity."""
 RESOLVED = 5e-6
 """Least distance from a place [degree] that the angle of a peak tells: within as much of a period it is 0."""
-DISTANCES, STEP = 33, 1e-3
+DISTANCES, STEPS = 33, (1e-3, 3e-5, 1e-6)
 """Samples that tell scatter from a rise: the number of distances on either side of a place, at each of which five are
-close together, and the step between these, relative to the distance."""
+close together, and the steps between these, relative to the distance: a rise is smooth at one of them."""
 SCATTER = 0.1
 """Least fourth difference of such five that is scatter, relative to how far a peak exceeds what may be reached."""
 NEAREST, SMOOTH, GROWN = 1e-9, 0.01, 3.0
@@ -81,8 +81,8 @@ def spoilt_peaks(group: Group, places: Singular, peaks: dict[str, tuple[Array, .
     away = signed_distance(places.angle, at, group.scene.period)
 
     def values_beside(signal: Array, place: Array, beside: Array) -> Array:
-        """Return one signal's values about one place each, at angles (each, distance, step) beside it [degree]."""
-        angles, values = places.angle[place, None, None] + beside, np.empty(beside.shape)
+        """Return one signal's values about one place each, at angles (each, …) beside it [degree]."""
+        angles, values = (places.angle[place] + beside.T).T, np.empty(beside.shape)
         for k in np.unique(signal):
             own = signal == k
             rows = np.repeat(places.row[place[own]], math.prod(beside.shape[1:]))
@@ -122,20 +122,20 @@ def _reached(beside: Array) -> Array:
 
 
 def _five_at_each(peak: Array, nearest: Array, farthest: Array, least: Array) -> Array:
-    """Return angles beside places (each, distance, step) [degree]: five close together at each distance on both sides,
-    and from the peak on, either way; no step is less than the least."""
+    """Return angles beside places (each, kind of step, distance, step) [degree]: five close together at each distance
+    on both sides, and from the peak on, either way; no step is less than the least."""
     distances = np.geomspace(nearest, farthest, DISTANCES).T
     starts = np.concatenate([distances, -distances, peak[:, None], peak[:, None]], axis=1)
     ways = np.repeat([1.0, -1.0, 1.0, -1.0], [DISTANCES, DISTANCES, 1, 1])
-    steps = ways * np.maximum(STEP * np.abs(starts), least[:, None])
-    return starts[..., None] + steps[..., None] * np.arange(5.0)
+    steps = [ways * np.maximum(step * np.abs(starts), least[:, None]) for step in STEPS]
+    return starts[:, None, :, None] + np.stack(steps, axis=1)[..., None] * np.arange(5.0)
 
 
 def _scatters(sampled: Array, reached: Array, excess: Array) -> Array:
-    """Return whether fives of samples (each, distance, step) scatter by as much as peaks exceed what may be reached;
-    infinite ones, only if they have not grown from there while they were smooth."""
+    """Return whether fives of samples (each, kind of step, distance, step) scatter, by steps of any kind, by as much as
+    peaks exceed what may be reached; infinite ones, only if they have not grown from there while they were smooth."""
     with np.errstate(invalid="ignore"):
-        size, scatter = np.abs(sampled).max(axis=2), np.abs(np.diff(sampled, n=4))[..., 0]
+        size, scatter = np.abs(sampled).max(axis=3).min(axis=1), np.abs(np.diff(sampled, n=4))[..., 0].min(axis=1)
         noisy = np.any(scatter > SCATTER * np.minimum(size, excess[:, None]), axis=1)
         size, smooth = (
             of_fives[:, : 2 * DISTANCES].reshape(-1, 2, DISTANCES) for of_fives in (size, scatter < SMOOTH * size)

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from linkage_reference import solved
 from oracle import FourBarData, LinkData, solve, to_scene
 
 import linksweep as ls
@@ -52,6 +53,30 @@ def test_a_torque_with_summits_close_to_a_change_point():
     before, there, after = (float(solve(data, at + step)["T12"]) for step in (-1e-4, 0.0, 1e-4))
     assert torque == pytest.approx(there, rel=1e-12) and torque > 1e12 and max(before, after) < torque
     assert float(peaks.T12_min) < float(solve(data, -1e-5)["T12"]) < -1e14
+
+
+def test_a_torque_with_a_summit_much_narrower_than_its_distance_from_a_change_point():
+    """The rocker of almost a kite swings the second four-bar past a near-toggle of its own, 0.0025° from the change
+    point and 2e-6° wide, against multibody equations in 50 digits."""
+    parts = {
+        "crank": ls.Link(1.083021049277583, 1.5576597795167386, 0.05084291120642651, 0.05350589231451206, -67.5),
+        "coupler": ls.Link(2.118635938859966, 0.5262411991178174, 0.23724229059896837, 2.356590666695914, 167.0),
+        "rocker": ls.Link(2.118557928126381, 0.7853491741578915, 0.2421135934391274, 2.057800883862827),
+        "rod": ls.Link(1.3877914660987059, 1.782110641502837, 0.6015654563391276, 0.14224282707116231, 153.6),
+        "output": ls.Link(0.5500014372121467, 0.9245485498543777, 0.04406808820562005, 0.17030045586894055),
+    }
+    machine = ls.Linkage(
+        "crank A-B, coupler B-C, rocker D-C-E, rod E-F, output G-F",
+        ground={"A": (0.0, 0.0), "D": (1.0829430385297039, 0.0), "G": (1.1254930845849316, -0.534824208346242)},
+        points={"E": (1.4012784213912406, -24.037647027785596)},
+        branch={"C": "crossed", "F": "open"},
+        **parts,
+    )
+    scene = ls.Scene(machine, -1.640532108631156, -81.05416211657598, (0.0, -9.81), [ls.Load("output", torque=3.0)])
+    peaks = ls.peaks(scene, of=["T12"])
+    at, torque = float(peaks.T12_max_at), float(peaks.T12_max)
+    before, there, after = (solved(scene, at + step)[0]["T12"] for step in (-1e-6, 0.0, 1e-6))
+    assert torque == pytest.approx(there, rel=1e-10) and torque > 3e15 and max(before, after) < 0.95 * torque
 
 
 @pytest.mark.parametrize(
