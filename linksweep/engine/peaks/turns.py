@@ -22,7 +22,7 @@ from linksweep.engine.trace.graph import Node
 
 PEAK_ANGLE = PEAK_X
 """Row of `best` that has angles from the near-toggle [degree], in place of tangents, once a search of turns is done."""
-CLOSER = 0.25
+CLOSER = 0.125
 """Part of the width of a near-toggle by which samples are placed where they may lie too far apart."""
 BLOCKS = 32
 """Blocks of designs whose brackets are refined together."""

@@ -68,3 +68,19 @@ def test_two_summits_between_samples():
     peaks, turn = ls.peaks(scene, of=["F14"]), ls.sweep(scene, 360_000, of=["F14"]).F14
     assert float(peaks.F14_peak) == pytest.approx(float(turn.max()), rel=1e-10)
     assert float(peaks.F14_peak_at) == pytest.approx(float(turn.idxmax()), abs=1e-3)
+
+
+def test_two_summits_within_a_tenth_of_a_near_toggle():
+    """Whitworth's machine by its rocker, its near-toggle 0.12 degrees wide: F14 has summits 0.012 degrees apart."""
+    crank = ls.Link(2.4954619826467166, 0.8162967627541136, 0.8943976452209275, 2.1770830915346955, 155.91768421936354)
+    rocker = ls.Link(
+        2.4902394770755567, 1.1628376664378928, 0.6830039397816392, 2.7931955446285293, -37.345099041271425
+    )
+    block = {"block_mass": 1.1856326366661498, "block_inertia": 0.1367441523965136}
+    machine = ls.InvertedSliderCrank(
+        crank, rocker, 2.4902394770755567, **block, offset=0.0010770272707495024, branch="crossed"
+    )
+    scene = ls.Scene(machine, -17.983369054876242, 42.16808470705908, (0.0, -9.81), drive="rocker")
+    peak, near = ls.peaks(scene, of=["F14"]), ls.sweep(scene, np.linspace(-0.03, 0.0, 30_001), of=["F14"]).F14
+    assert float(peak.F14_peak) == pytest.approx(float(near.max()), rel=1e-10)
+    assert float(peak.F14_peak_at) == pytest.approx(360.0 + float(near.idxmax()), abs=1e-5)
