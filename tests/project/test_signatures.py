@@ -11,6 +11,7 @@ from functools import reduce
 import pytest
 
 import linksweep as ls
+from linksweep.engine import run, threads
 from linksweep.plot.accessor import Cycle
 
 POSITIONAL = (inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)
@@ -93,14 +94,15 @@ def test_signatures_that_break_the_rules_are_reported():
 
 @pytest.mark.parametrize("name", sorted(WORK))
 def test_functions_that_work_accept_threads(name):
-    threads = FUNCTIONS[name].parameters["threads"]
-    assert threads.kind is inspect.Parameter.KEYWORD_ONLY and threads.default is None
+    parameter = FUNCTIONS[name].parameters["threads"]
+    assert parameter.kind is inspect.Parameter.KEYWORD_ONLY and parameter.default is None
     with pytest.raises(ValueError, match=r"^threads = 0: must be a whole number, 1 or more"):
         reduce(getattr, name.split("."), ls)(threads=0)
 
 
 CAR, PRESS = ls.example("loop"), ls.example("press")
 MOTOR = ls.Motor(speeds=(0.0, 600.0), torques=(4.0, 1.0))
+TURN = [*range(0, 360, 10)]
 
 
 @pytest.mark.parametrize(
@@ -108,14 +110,20 @@ MOTOR = ls.Motor(speeds=(0.0, 600.0), torques=(4.0, 1.0))
     [
         lambda n: ls.flywheel(PRESS, inertia=1.0, theta2=36, threads=n),
         lambda n: ls.motor_load(PRESS, MOTOR, theta2=36, threads=n),
-        lambda n: ls.position_equation(PRESS, 45.0, threads=n),
+        lambda n: ls.position_equation(PRESS, TURN, threads=n),
         lambda n: ls.speed_limit(PRESS, "F32", below=1000.0, threads=n),
         lambda n: ls.speed_separation(PRESS, "F32x", theta2=36, threads=n),
-        lambda n: ls.system(PRESS, 45.0, threads=n),
+        lambda n: ls.system(PRESS, TURN, threads=n),
     ],
 )
-def test_threads_change_no_result(work):
-    assert work(1).identical(work(2))
+def test_threads_change_no_result(work, monkeypatch):
+    monkeypatch.setattr(run, "SAMPLES_PER_THREAD", 1)
+    monkeypatch.setattr(run, "COMPILE_AFTER", -1)
+    submitted, pool = [], threads._pool
+    monkeypatch.setattr(threads, "_pool", lambda process: submitted.append(process) or pool(process))
+    alone = work(1)
+    assert not submitted
+    assert work(2).identical(alone) and submitted
 
 
 def test_decorated_functions_show_their_own_signature():

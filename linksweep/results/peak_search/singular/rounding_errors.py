@@ -132,7 +132,7 @@ def _five_at_each(peak: Array, nearest: Array, farthest: Array, least: Array) ->
 
 
 def _scatters(sampled: Array, reached: Array, excess: Array) -> Array:
-    """Return whether fives of samples (each, kind of step, distance, step) scatter, by steps of any kind, by as much as
+    """Return whether fives of samples (each, kind of step, distance, step) scatter, by steps of every kind, as much as
     peaks exceed what may be reached; infinite ones, only if they have not grown from there while they were smooth."""
     with np.errstate(invalid="ignore"):
         size, scatter = np.abs(sampled).max(axis=3).min(axis=1), np.abs(np.diff(sampled, n=4))[..., 0].min(axis=1)
