@@ -9,7 +9,8 @@ Source: Dowell and Jarratt, A modified regula falsi method, BIT 11 (1971).
 """
 
 from linksweep.engine.kernel.instructions import call
-from linksweep.engine.near_zero.samples import BEYOND, MOST, note, place, sample, used_columns
+from linksweep.engine.near_zero.places import next_place
+from linksweep.engine.near_zero.samples import BEYOND, MOST, most, note, place, sample, used_columns
 from linksweep.engine.peaks.zeros import (
     AT_TRIAL,
     FOUND,
@@ -20,22 +21,25 @@ from linksweep.engine.peaks.zeros import (
     STEPS,
     STOP,
     TRIAL,
-    false_position,
     narrow,
     open_zero,
+    place_on_lines,
 )
 
 FLAT = 1e-3
 """Half-width that is noted of a flat place: three zeros in a tenth of a degree may be taken as one."""
 
 
-def look_for_crossings(samples, half, signal, signals, crossings, counts, owner, results):
-    """Open brackets of a signal's zeros on a piece, and note flat places; what may be noise counts as positive, and so
-    does a sample without a value, which no bracket spans."""
-    places, was_negative = samples[2], is_negative(samples, BEYOND, signal, signals)
-    for j in range(BEYOND + 1, places - BEYOND):
-        negative = is_negative(samples, j, signal, signals)
-        if negative != was_negative:
+def look_for_crossings(samples, noted, half, signal, signals, crossings, counts, owner, results):
+    """Open brackets of a signal's zeros about places on a piece, and note flat places; what may be noise counts as
+    positive, and so does a sample without a value, which no bracket spans."""
+    places = samples[2]
+    for step in range(places - 2 * BEYOND):
+        if noted < 1.0:
+            break
+        j, noted = next_place(noted, step)
+        inside = BEYOND < j < places - BEYOND
+        if inside and is_negative(samples, j, signal, signals) != is_negative(samples, j - 1, signal, signals):
             i, k = j - 1, j
             while i > 0 and may_be_noise(samples, i, signal, signals):
                 i -= 1
@@ -49,22 +53,17 @@ def look_for_crossings(samples, half, signal, signals, crossings, counts, owner,
                     flat, tangent = flat_place(samples, k - 2, signal)
                     if flat:
                         note(results, owner, tangent, half, signal, -FLAT)
-        was_negative = negative
 
 
 def is_negative(samples, j, signal, signals):
     """Return whether a sample of a signal is negative by more than noise."""
-    return sample(samples, j, signal) < 0.0 and is_clear(samples, j, signal, signals)
-
-
-def is_clear(samples, j, signal, signals):
-    """Return whether a sample of a signal is clear of zero, by the third of its signals."""
-    return sample(samples, j, signal + 2 * signals) > 0.0
+    return most(samples, j, signal, signals) < 0.0
 
 
 def may_be_noise(samples, j, signal, signals):
     """Return whether a sample of a signal has a value that is not clear of zero."""
-    return sample(samples, j, signal + 2 * signals) <= 0.0
+    value = sample(samples, j, signal)
+    return abs(value) <= most(samples, j, signal, signals) - value
 
 
 def open_crossing(crossings, counts, lanes, lane, bracket, half, signal, owner, results):
@@ -105,13 +104,12 @@ def find_zeros(crossings, counts, lanes, own, evaluate, front, results):
         still_open = 0
         for k in range(columns):
             still_open += 1 if crossings[HOLDS, k] == OPEN else 0
-            crossings[TRIAL, k] = false_position(crossings, k)
         if still_open == 0:
             break
+        place_on_lines(crossings, columns)
         call(evaluate, (own, crossings, TRIAL, AT_TRIAL, SIDE, SIGNAL_NUMBER, 0, columns))
-        for k in range(columns):
-            if crossings[HOLDS, k] == OPEN:
-                narrow(crossings, k)
-                if crossings[HOLDS, k] == FOUND:
-                    zero, half, signal = crossings[STOP, k], crossings[SIDE, k], crossings[SIGNAL_NUMBER, k]
-                    note(results, front + k % lanes, zero, half, signal, 0.0)
+        narrow(crossings, columns)
+    for k in range(columns):
+        if crossings[HOLDS, k] == FOUND and k // lanes < counts[k % lanes]:
+            zero, half, signal = crossings[STOP, k], crossings[SIDE, k], crossings[SIGNAL_NUMBER, k]
+            note(results, front + k % lanes, zero, half, signal, 0.0)

@@ -12,6 +12,7 @@ import math
 
 from linksweep.engine.kernel.instructions import call
 from linksweep.engine.near_zero.crossings import FLAT, open_crossing
+from linksweep.engine.near_zero.places import next_place
 from linksweep.engine.near_zero.samples import BEYOND, MOST, noise, note, place, sample, used_columns
 from linksweep.engine.peaks.brackets import (
     BRACKET_ROWS,
@@ -51,15 +52,17 @@ A, F_A, C, F_C, OWN, TOP, F_TOP, BROAD, LAST, STEEP, COUNTS = range(BRACKET_ROWS
 DIP_ROWS = BRACKET_ROWS + 11
 
 
-def look_for_dips(samples, half, signal, signals, kind, dips, counts, owner, results):
-    """Open brackets of a signal's dips on a piece; values that are noise apart are the same."""
+def look_for_dips(samples, noted, half, signal, signals, kind, dips, counts, owner, results):
+    """Open brackets of a signal's dips about places on a piece; values that are noise apart are the same."""
     places = samples[2]
-    before, here = sample(samples, BEYOND - 1, signal), sample(samples, BEYOND, signal)
-    for j in range(BEYOND, places - BEYOND):
-        after = sample(samples, j + 1, signal)
+    for step in range(places - 2 * BEYOND):
+        if noted < 1.0:
+            break
+        j, noted = next_place(noted, step)
+        before, here, after = sample(samples, j - 1, signal), sample(samples, j, signal), sample(samples, j + 1, signal)
         side = 1.0 if here > 0.0 else -1.0
         sought = JUMP if kind == TOGGLE and side < 0.0 else kind
-        if side * here <= side * before and side * here < side * after:
+        if BEYOND <= j < places - BEYOND and side * here <= side * before and side * here < side * after:
             higher, i, k = side * here + noise(samples, j, signal, signals), j - 1, j + 1
             while i > 0 and side * sample(samples, i, signal) <= higher:
                 i -= 1
@@ -71,7 +74,6 @@ def look_for_dips(samples, half, signal, signals, kind, dips, counts, owner, res
                 number = float(signal + signals) if side > 0.0 else float(signal)  # dips are peaks of opposites
                 bracket = (a, -f_a), (b, -f_b), (c, -f_c)
                 open_dip(dips, counts, samples[4], samples[5], bracket, half, number, signal, owner, results)
-        before, here = here, after
 
 
 def may_matter(a, f_a, b, f_b, c, f_c, kind):
@@ -122,7 +124,8 @@ def check_noise(dips, counts, lanes, signals, own, evaluate, front, results):
         dips[X1, k], dips[X2, k] = dips[TOP, k], dips[OWN, k] + 2.0 * signals
     call(evaluate, (own, dips, X1, F1, FAR, X2, 0, columns))
     for k in range(columns):
-        if k // lanes < counts[k % lanes] and not dips[F1, k] > 0.0:
+        value = -dips[F_TOP, k] if dips[SIGNAL, k] >= signals else dips[F_TOP, k]
+        if k // lanes < counts[k % lanes] and not dips[F1, k] - value < abs(value):
             results[1][front + k % lanes] = 1.0
 
 

@@ -12,7 +12,7 @@ from linksweep.engine.peaks.zeros import ZERO_ROWS
 from linksweep.engine.run import Fields
 from linksweep.engine.trace.plan import Plan
 
-KINDS = (*[INTEGER] * 4, *OF_DESIGNS, "f8[:, :, :]", ROW, TABLE, ROW, TABLE, ROW, "f8[:, :, :]", ROW)
+KINDS = (*[INTEGER] * 4, *OF_DESIGNS, "f8[:, :, :]", ROW, *[TABLE] * 3, ROW, TABLE, ROW, "f8[:, :, :]", ROW)
 """Kinds of the arguments of `search.find_near_zero`."""
 
 
@@ -35,7 +35,7 @@ def dips_and_zeros(
     def work(first: int, last: int) -> None:
         run(
             first, last, designs.designs, designs.lanes, *designs.arguments(first, last, places), ends, kinds,
-            np.zeros((dips.DIP_ROWS, columns)), np.zeros(designs.lanes),
+            *np.zeros((2, 1, len(kinds) * designs.lanes)), np.zeros((dips.DIP_ROWS, columns)), np.zeros(designs.lanes),
             np.zeros((ZERO_ROWS, columns)), np.zeros(designs.lanes), events, left,
         )  # fmt: skip
 

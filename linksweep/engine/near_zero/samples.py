@@ -37,7 +37,7 @@ MOST = 24
 SAME_ZERO = 1e-10
 """Distance of two zeros that are one."""
 NOISE_SHARE = 0.04
-"""Noise of a sample, in units of that which its distance from zero allows for."""
+"""Noise of a sample, in units of that which the most that it may be allows for."""
 
 
 def place_samples(ends, owner, nth, lanes, lane, places, grades, x):
@@ -86,9 +86,14 @@ def place(samples, j):
     return x[j * lanes + lane]
 
 
+def most(samples, j, signal, signals):
+    """Return the most that a sample may be without noise: the third of its signals, after the opposites."""
+    return sample(samples, j, signal + 2 * signals)
+
+
 def noise(samples, j, signal, signals):
-    """Return the noise of a sample: its distance from zero is the third of its signals, after the opposites."""
-    return NOISE_SHARE * (abs(sample(samples, j, signal)) - sample(samples, j, signal + 2 * signals))
+    """Return the noise of a sample."""
+    return NOISE_SHARE * (most(samples, j, signal, signals) - sample(samples, j, signal))
 
 
 def note(results, owner, tangent, half, signal, width):

@@ -9,17 +9,18 @@ opened about dips (`dips.py`) and zeros (`crossings.py`), which are then refined
 from linksweep.engine.kernel.instructions import call
 from linksweep.engine.near_zero.crossings import find_zeros, look_for_crossings
 from linksweep.engine.near_zero.dips import check_noise, look_for_dips, measure_widths, open_sides, refine_dips
+from linksweep.engine.near_zero.places import PLACES, note_crossings, note_dips
 from linksweep.engine.near_zero.samples import END, place_samples
 
 
 def find_near_zero(
     first, last, designs, lanes, sizes, parameters, parameter_at, grades, prepare, share, sample, evaluate, constants,
-    x, rows, ends, kinds, dips, dipped, crossings, crossed, events, left
+    x, rows, ends, kinds, near, beyond, dips, dipped, crossings, crossed, events, left
 ):  # fmt: skip
     """Write the events in blocks `first` … `last` of designs to `events`, and 1 to `left` of designs that are left.
 
-    The plan has three signals for each of the `kinds`: the signal, its opposite, and its distance from zero, less what
-    noise may make of it.
+    The plan has three signals for each of the `kinds`: the signal, its opposite, and the most that it may be without
+    noise. `near` and `beyond` are tables for the places at which it comes near to zero, and crosses it.
     """
     own, signals, results = constants[0], len(kinds), (events, left)
     places, columns = len(x) // (2 * lanes), 3 * signals * lanes
@@ -35,13 +36,19 @@ def find_near_zero(
                 pieces += place_samples(ends, front + lane, nth, lanes, lane, places, grades, x)
             if pieces > 0:
                 call(sample, (own, x, rows))
+                note_dips(rows, places - 1, columns, near)
+                note_crossings(rows[2 * signals * lanes :], places - 1, columns, beyond)
                 for lane in range(used):
                     if ends[END, front + lane, nth + 1] == ends[END, front + lane, nth + 1]:
                         samples, half = (rows, x, places, columns, lanes, lane), x[places * lanes + lane]
                         for signal in range(signals):
-                            kind, owner = kinds[signal], front + lane
-                            look_for_dips(samples, half, signal, signals, kind, dips, dipped, owner, results)
-                            look_for_crossings(samples, half, signal, signals, crossings, crossed, owner, results)
+                            kind, owner, k = kinds[signal], front + lane, signal * lanes + lane
+                            look_for_dips(
+                                samples, near[PLACES, k], half, signal, signals, kind, dips, dipped, owner, results
+                            )
+                            look_for_crossings(
+                                samples, beyond[PLACES, k], half, signal, signals, crossings, crossed, owner, results
+                            )
         refine_dips(dips, dipped, lanes, own, evaluate)
         check_noise(dips, dipped, lanes, signals, own, evaluate, front, results)
         open_sides(dips, dipped, lanes, signals, kinds, crossings, crossed, front, results)

@@ -91,7 +91,8 @@ class Around(Lanewise):
     """A function of every two samples around a turn: of the one before them, both, the one after, the number of the
     first, and of rows of a table that it updates from their `start` on.
 
-    Called with the samples (row after row of lanes), their even number, the table and the number of its columns.
+    Called with the samples, row after row of so many columns, their even number, that of the columns, and the table:
+    its columns are those of the first samples of each row.
     """
 
     def __init__(self, function: Callable[..., tuple[Node, ...]], start: dict[int, float]):
@@ -106,9 +107,10 @@ class Around(Lanewise):
             known.update({node} if known.issuperset(node.operands) else ())
         return [node for node in self.traced.nodes if node in known]
 
-    def __call__(self, samples: np.ndarray, count: int, table: np.ndarray, columns: int) -> None:  # type: ignore[override]
+    def __call__(self, samples: np.ndarray, count: int, columns: int, table: np.ndarray) -> None:  # type: ignore[override]
         inputs, nodes, results = self.traced
-        first, second = samples[: count * columns].reshape(-1, 2, columns).swapaxes(0, 1)
+        every_two = samples[: count * columns].reshape(-1, 2, columns)[..., : table.shape[1]]
+        first, second = every_two.swapaxes(0, 1)
         number = np.arange(0.0, count, 2.0)[:, None]
         around = np.roll(second, 1, axis=0), first, second, np.roll(first, -1, axis=0), number
         every = interpret(self.of_samples, dict(zip(inputs, around, strict=False)))
@@ -125,26 +127,26 @@ class Around(Lanewise):
                     values[node] = function(*[values[x] for x in node.operands])
                 now = tuple(values[node] for node in results)
         for k, value in zip(self.outputs, now, strict=True):
-            table[k, :columns] = value
+            table[k] = value
 
     @property
     def text(self) -> str:
         return f"{super().text} {self.start}"
 
     def compiled(self) -> MachineCode:
-        return machine_code(self.emit, (ROW, INTEGER, TABLE, INTEGER), self.text)
+        return machine_code(self.emit, (ROW, INTEGER, INTEGER, TABLE), self.text)
 
-    def emit(self, builder: Any, samples: Any, count: Any, table: Any, columns: Any) -> None:  # type: ignore[override]
+    def emit(self, builder: Any, samples: Any, count: Any, columns: Any, table: Any) -> None:  # type: ignore[override]
         vectors, (inputs, nodes, results) = Instructions(builder), self.traced
         none, one, two = (vectors.integer(k) for k in range(3))
-        last, latest = builder.sub(count, one), builder.sub(columns, vectors.integer(LANES))
+        last, latest = builder.sub(count, one), builder.sub(table.shape[1], vectors.integer(LANES))
         start = [vectors.wide(vectors.double(number)) for number in self.start]
         carried = [*inputs[:2], *inputs[5:]]
 
         def sample(j: Any, k: Any) -> Any:
             return vectors.load(samples.data, builder.add(builder.mul(columns, j), k))
 
-        with vectors.loop(none, columns, ABREAST * LANES) as (first, _):
+        with vectors.loop(none, table.shape[1], ABREAST * LANES) as (first, _):
             starts = (builder.add(first, vectors.integer(k * LANES)) for k in range(ABREAST))
             blocks = [vectors.smaller(k, latest) for k in starts]
             running = [[*map(vectors.slot, (sample(last, k), sample(none, k), *start))] for k in blocks]

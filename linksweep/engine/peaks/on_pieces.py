@@ -96,9 +96,9 @@ def sample_piece(front, piece, designs, lanes, of_designs, sampling, tables, row
 def compare(rows, columns, half, state):
     """Note the best summit of each signal on pieces side by side, and how high that and any other may reach."""
     if half == FEW:
-        compare_few(rows[(FEW - 1) * columns :], 2 * FEW + 4, state, columns)
+        compare_few(rows[(FEW - 1) * columns :], 2 * FEW + 4, columns, state)
     else:
-        compare_many(rows[(HALF - 1) * columns :], 2 * HALF + 4, state, columns)
+        compare_many(rows[(HALF - 1) * columns :], 2 * HALF + 4, columns, state)
 
 
 def note_summits(rows, state, lanes, place, half, own, highest, summits, count, tops):

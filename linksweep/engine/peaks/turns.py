@@ -79,7 +79,7 @@ def search(
             if place_samples(own, lanes, grades, CLOSER if sparse else 1.0, x) > 0:
                 call(share, (own, x))
             call(sample, (own, x, rows))
-            compare_samples(rows, SAMPLES, state, columns)
+            compare_samples(rows, SAMPLES, columns, state)
             for k in range(columns):
                 pick_sample(samples, k, state, k)
             try_vertices(own, state, columns, lanes, -1, evaluate)

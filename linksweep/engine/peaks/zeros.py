@@ -9,8 +9,11 @@ Illinois method refines the brackets of many pieces at once.
 Source: Dowell and Jarratt, A modified regula falsi method, BIT 11 (1971).
 """
 
+import math
+
 from linksweep.engine.kernel.instructions import call
 from linksweep.engine.peaks.brackets import gather
+from linksweep.engine.peaks.lanewise import lanewise
 from linksweep.engine.peaks.on_pieces import most_pieces, sample_piece
 
 MOST_ZEROS = 12
@@ -52,11 +55,9 @@ def find_zeros(
         for _ in range(STEPS):
             if count == 0:
                 break
-            for k in range(count):
-                zeros_at[TRIAL, k] = false_position(zeros_at, k)
+            place_on_lines(zeros_at, count)
             evaluate_trials(zeros_at, count, lanes, constants, gathered, evaluate)
-            for k in range(count):
-                narrow(zeros_at, k)
+            narrow(zeros_at, count)
             count = drop_closed(zeros_at, count, start, lanes, pieces, zeros)
 
 
@@ -110,23 +111,28 @@ def keep_vertices(zeros_at, count):
             zeros_at[AT_START, k], zeros_at[HOLDS, k] = zeros_at[AT_TRIAL, k], OPEN if beyond else NONE
 
 
-def false_position(zeros_at, k):
-    """Return where the line through a bracket's ends is zero."""
-    a, f_a, b, f_b = zeros_at[START, k], zeros_at[AT_START, k], zeros_at[STOP, k], zeros_at[AT_STOP, k]
-    return b - f_b * (b - a) / (f_b - f_a) if f_b != f_a else b
+@lanewise((START, AT_START, STOP, AT_STOP), (TRIAL,))
+def place_on_lines(a, f_a, b, f_b):
+    """Place trials where the lines through the ends of brackets are zero."""
+    step = f_b * (b - a) / (f_b - f_a)
+    return ((abs(step) < math.inf).where(b - step, b),)
 
 
-def narrow(zeros_at, k):
-    """Make a bracket's trial its end, by the Illinois method; it is closed where that hardly moves the end."""
-    value = zeros_at[AT_TRIAL, k]
-    value = value if value == value else 0.0  # where there is no value, the place itself is near enough
-    if (value < 0.0) == (zeros_at[AT_STOP, k] < 0.0):
-        zeros_at[AT_START, k] *= 0.5
-    else:
-        zeros_at[START, k], zeros_at[AT_START, k] = zeros_at[STOP, k], zeros_at[AT_STOP, k]
-    if value == 0.0 or abs(zeros_at[TRIAL, k] - zeros_at[STOP, k]) < CLOSED:
-        zeros_at[HOLDS, k] = FOUND
-    zeros_at[STOP, k], zeros_at[AT_STOP, k] = zeros_at[TRIAL, k], value
+@lanewise((START, AT_START, STOP, AT_STOP, TRIAL, AT_TRIAL, HOLDS), (START, AT_START, STOP, AT_STOP, HOLDS))
+def narrow(a, f_a, b, f_b, x, f, holds):
+    """Make the trials of open brackets their ends, by the Illinois method; one is closed where that hardly moves the
+    end."""
+    f = (f < 0.0).where(f, (f > 0.0).where(f, 0.0))  # where there is no value, the place itself is near enough
+    closed = (abs(f) > 0.0).where((abs(x - b) < CLOSED).where(FOUND, holds), FOUND)
+    ends = zip((a, 0.5 * f_a), (b, f_b), strict=True)
+    start = (by_signs(f, f_b, same, other) for same, other in ends)
+    new, old = (*start, x, f, closed), (a, f_a, b, f_b, holds)
+    return tuple((holds > NONE).where((holds < FOUND).where(p, q), q) for p, q in zip(new, old, strict=True))
+
+
+def by_signs(x, y, same, other):
+    """Return the one where both of two numbers are negative, or neither, else the other."""
+    return (x < 0.0).where((y < 0.0).where(same, other), (y < 0.0).where(other, same))
 
 
 def drop_closed(zeros_at, count, start, lanes, pieces, zeros):

@@ -18,7 +18,7 @@ def near_zero(height, kind, cuts=(), noise=NOISE):
 
     def values(angle):
         signal = height(angle)
-        return np.stack([signal, -signal, np.abs(signal) - 100.0 * noise])
+        return np.stack([signal, -signal, signal + 100.0 * noise])
 
     def prepare(first, designs, sizes, parameters, parameter_at, constants):
         constants[:] = 1.0
@@ -39,7 +39,7 @@ def near_zero(height, kind, cuts=(), noise=NOISE):
         search.find_near_zero(
             0, 1, 1, 1, one, np.zeros(1), 0 * one, grades(half, samples.EVENLY), prepare, lambda *_: None, sample,
             evaluate, np.zeros((1, 2)), np.zeros(2 * places), np.zeros(3 * places), ends.T[:, None, :],
-            np.array([kind]), np.zeros((dips.DIP_ROWS, samples.MOST)), np.zeros(1),
+            np.array([kind]), *np.zeros((2, 1, 1)), np.zeros((dips.DIP_ROWS, samples.MOST)), np.zeros(1),
             np.zeros((ZERO_ROWS, samples.MOST)), np.zeros(1), events, left,
         )  # fmt: skip
     place, far, _, width = events[:, 0, np.isfinite(events[0, 0])]
@@ -134,6 +134,17 @@ def test_the_first_look_finds_both_of_two_dips_or_notes_a_flat_place():
             expected = middle + 0.5 * apart * np.array([-1.0, 1.0])
             both = [np.abs(away(angles[widths > 0.0], at)).min() < 1e-6 for at in expected]
             assert not left and (all(both) or (widths < 0.0).any())
+
+
+def test_more_dips_and_zeros_on_a_half_turn_than_are_noted_apart_are_all_found():
+    """Ten and nine on each half turn."""
+    for height, kind, expected in (
+        (lambda angle: 1e-3 + 1.0 - np.cos(20.0 * angle), dips.TOGGLE, np.radians(18.0) * np.arange(20)),
+        (lambda angle: np.sin(9.0 * angle), dips.JUMP, np.radians(20.0) * np.arange(18)),
+    ):
+        angles, _, left = near_zero(height, kind)
+        np.testing.assert_allclose(np.sort(np.mod(angles + 0.1, 2.0 * np.pi)), expected + 0.1, atol=1e-6)
+        assert not left
 
 
 def test_rounding_makes_no_dips():

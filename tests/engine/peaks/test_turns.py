@@ -7,7 +7,8 @@ import pytest
 import xarray as xr
 
 import linksweep as ls
-from linksweep.engine.peaks import on_pieces, turns
+from linksweep.engine.near_zero import places
+from linksweep.engine.peaks import on_pieces, turns, zeros
 from linksweep.engine.peaks.brackets import BEST_ROWS, BRACKET_ROWS, PEAK
 from linksweep.engine.peaks.evaluators import Evaluators
 from linksweep.engine.peaks.lanewise import Around, Lanewise
@@ -16,7 +17,12 @@ from linksweep.engine.peaks.summits import might_reach_between
 from linksweep.engine.trace.plan import plan
 
 PLACED = 2 * HALF + 2
-LANEWISE = {name: value for name, value in {**vars(turns), **vars(on_pieces)}.items() if isinstance(value, Lanewise)}
+LANEWISE = {
+    name: value
+    for module in (turns, on_pieces, zeros, places)
+    for name, value in vars(module).items()
+    if isinstance(value, Lanewise)
+}
 SPECIAL = (0.0, -0.0, 1.0, np.inf, -np.inf, np.nan)
 
 
@@ -32,10 +38,10 @@ def table(seed: int, columns: int = 24) -> np.ndarray:
 def test_lanes_have_the_same_bits_compiled_and_interpreted(name):
     function, columns = LANEWISE[name], 24
     compiled, interpreted = table(3), table(3)
-    samples = (np.random.default_rng(4).normal(size=SAMPLES * columns), SAMPLES) if isinstance(function, Around) else ()
-    function.compiled()(*samples, compiled, columns)
-    with np.errstate(all="ignore"):
-        function(*samples, interpreted, columns)
+    samples = np.random.default_rng(4).normal(size=SAMPLES * columns), SAMPLES, columns
+    for lanes, numbers in ((function.compiled(), compiled), (function, interpreted)):
+        with np.errstate(all="ignore"):
+            lanes(*samples, numbers) if isinstance(function, Around) else lanes(numbers, columns)
     np.testing.assert_array_equal(compiled, interpreted)
     assert not np.array_equal(compiled, table(3), equal_nan=True)
 
@@ -50,7 +56,7 @@ def test_the_best_summit_and_the_next_are_those_of_a_search_one_by_one():
     """Against a plain loop over the samples of each signal."""
     columns, state = 8, np.zeros((turns.STATE_ROWS, 8))
     rows = np.random.default_rng(1).normal(size=(SAMPLES, columns))
-    turns.compare_samples(rows.ravel(), SAMPLES, state, columns)
+    turns.compare_samples(rows.ravel(), SAMPLES, columns, state)
     before, after = np.roll(rows, 1, axis=0), np.roll(rows, -1, axis=0)
     reach = np.where((before < rows) & (after <= rows), 3.0 * rows - before - after, -np.inf)
     ranked = np.sort(reach, axis=0)
@@ -65,7 +71,7 @@ def test_beside_a_sample_without_a_value_a_summit_of_any_height_may_hide():
     for lane, none in enumerate((0, 7, HALF, SAMPLES - 1)):
         rows[none, lane], rows[(none + 1) % SAMPLES, lane] = np.nan, 3.0
         rows[(none + 11) % SAMPLES, lane] = 4.0
-    turns.compare_samples(rows.ravel(), SAMPLES, state, columns)
+    turns.compare_samples(rows.ravel(), SAMPLES, columns, state)
     assert (np.isposinf(state[turns.OTHER]) == [True] * 4 + [False] * 4).all()
     assert np.isfinite(state[turns.REACH]).all()
 
@@ -85,7 +91,7 @@ def test_a_top_between_two_of_four_samples_that_rise_or_fall_is_noted(top, dip, 
     for before in (3, 4):  # the samples are compared two by two
         state, padded = np.zeros((turns.STATE_ROWS, 1)), np.full((2 * HALF + 4, 1), samples.min() - 1.0)
         padded[before : before + 4, 0] = samples
-        on_pieces.compare_many(padded.ravel(), len(padded), state, 1)
+        on_pieces.compare_many(padded.ravel(), len(padded), 1, state)
         assert reach in [*state[[turns.REACH, turns.OTHER], 0], -np.inf]
 
 
