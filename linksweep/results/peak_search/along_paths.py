@@ -24,6 +24,8 @@ from linksweep.scene.pairs import Array, flat_index, in_period
 NODES, SPANS = 10, (25.0, 5.0, 1.0, 0.2, 0.04)
 """Samples before a toggle from which a signal is extrapolated, and the distances from it of the farthest ones, in steps
 of a path. The first is a quarter of that to the next toggle: others may hide beyond."""
+SPANS_AT_POLES = (*SPANS, 0.008)
+"""The same for singular places: a force that rises a hundredfold within a hundredth of a degree may have a limit."""
 ALLOWED = 1e-10
 """Error of a limit, relative to it, from which on samples are taken closer to the toggle."""
 STEP_AT_POLE, OF_ROUNDING, KNOWN = 0.1, 32.0, 1e-3
@@ -138,7 +140,7 @@ def raise_to_limits(group: Any, peaks: dict[str, SignalPeak], places: Singular, 
         names = tuple(signals[k] for k in which)
         return group.values(names, rows, angles.ravel()).reshape(-1, *x.shape)
 
-    limit, error, samples = limits_by_polynomials(values_at, np.full(len(row), STEP_AT_POLE), needs)
+    limit, error, samples = limits_by_polynomials(values_at, np.full(len(row), STEP_AT_POLE), needs, SPANS_AT_POLES)
     beyond = OF_ROUNDING * error
     higher = (beyond <= KNOWN * np.abs(limit)) & (limit - beyond > value)
     with np.errstate(invalid="ignore"):  # of limits that are not known
@@ -298,7 +300,7 @@ def _limits(group: Group, signals: tuple[str, ...], paths: Paths, end: int, peak
 
 
 def limits_by_polynomials(
-    values_at: Callable[[Array, Array, Array], Array], steps: Array, needs: Array
+    values_at: Callable[[Array, Array, Array], Array], steps: Array, needs: Array, spans: tuple[float, ...] = SPANS
 ) -> tuple[Array, Array, Array]:
     """Return the limits of signals at one end of arcs, or one side of singular places, where they are needed (signal,
     arc), −inf elsewhere, their errors, and counts of samples: the limits of polynomials through samples before the end,
@@ -307,7 +309,7 @@ def limits_by_polynomials(
     `values_at` returns values (signal, arc, place) of signals and arcs, by their numbers, at distances x (arc, place).
     """
     limit, error, samples = np.where(needs, 0.0, -np.inf), np.where(needs, np.inf, 0.0), np.zeros(needs.shape)
-    for span in SPANS:
+    for span in spans:
         with np.errstate(invalid="ignore"):
             unsure = needs & ~(error <= ALLOWED * np.abs(limit))
         rows, which = np.flatnonzero(unsure.any(axis=0)), np.flatnonzero(unsure.any(axis=1))

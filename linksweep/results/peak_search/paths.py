@@ -37,6 +37,9 @@ ASIDE = 1e-9
 """Distance from a jump at which its one-sided limits are taken [degree]."""
 BESIDE = np.array([ASIDE, 1e-3, 0.01, 0.1, 0.3, 1.0, 2.0, 4.0, 7.0, 11.0, 16.0, 22.0, 30.0])
 """Distances from a break of the samples on either side, far enough to reach those of the fused search [degree]."""
+FARTHER_ASIDE = 1e-4, 0.01
+"""Distances from a break of more samples [degree]: those closest by may consist of rounding errors, and the higher side
+of a jump hides a summit close to the lower one."""
 KINK_STEPS = 3
 """Steps of the false position towards a kink between two samples: a search finds it from there."""
 MOST_CUTS = 200
@@ -95,7 +98,7 @@ def turns(group: Any) -> Paths:
     even, quick = (np.broadcast_to(angles, (len(group.designs), len(angles))) for angles in (even, group.quick))
     graded = _graded_over_period(group)
     at_jumps = jump_angles(group)
-    sides, jumps = both_sides(np.concatenate([at_jumps, kinks(group)], axis=1)), both_sides(at_jumps)
+    sides, jumps = beside_breaks(np.concatenate([at_jumps, kinks(group)], axis=1)), both_sides(at_jumps)
     close = approach_samples(group)[:, ::7]
     # a piece between cuts has 15 nodes of its own: it needs fewer cuts than a search needs samples
     samples, edges = (
@@ -160,9 +163,14 @@ def _starts_of_motion(group: Group) -> Array:
     return period * np.arange(round(group.scene.period / period))
 
 
-def both_sides(angles: Array) -> Array:
+def both_sides(angles: Array, away: float = ASIDE) -> Array:
     """Return the angles (design, side) just before and just after each of these."""
-    return np.concatenate([angles - ASIDE, angles + ASIDE], axis=1)
+    return np.concatenate([angles - away, angles + away], axis=1)
+
+
+def beside_breaks(breaks: Array) -> Array:
+    """Return samples (design, sample) on both sides of each break [degree]."""
+    return np.concatenate([both_sides(breaks, away) for away in (ASIDE, *FARTHER_ASIDE)], axis=1)
 
 
 def kinks(group: Group) -> Array:

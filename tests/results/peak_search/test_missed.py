@@ -48,6 +48,11 @@ def test_a_peak_at_once_after_the_start_of_a_piece_is_found():
         ("Watt six-bar", 10, 610_000, 3623),  # a narrow top beside a sample, between a steep flank and a level one
         ("inverted slider-crank", 1_000_084, 0, 6848),  # between samples, each half as far from a narrow near-toggle
         ("inverted slider-crank", 1_000_085, 0, 8900),  # as the one before it
+        ("Watt six-bar by its output", 20, 1, 2596),  # beside a dead centre, at which rounding errors hid the slope
+        ("six-bar of any lengths by its output", 20, 1, 3584),  # a limit at a toggle, tenfold within 0.01°
+        ("six-bar of any lengths by its output", 20, 1, 8383),  # a rise ten-thousandfold within 0.01° of a toggle
+        ("knuckle-joint press by its upper link", 20, 0, 5989),  # beside the lower side of a jump
+        ("knuckle-joint press by its upper link", 20, 1, 287),  # as the one before it
     ],
 )
 def test_designs_that_were_missed_are_no_more(name, seed, part, design):

@@ -21,6 +21,9 @@ from linksweep.scene.pairs import Array
 
 CLEAR = 0.01
 """Distance from a singular place [degree] within which rounding errors may be peaks."""
+CLOSE_BY, FARTHER = 1e-5, 2.0
+"""Distance from it [degree] beyond which a peak may be one of the signal after all, and the factor to the next one
+where the signal is not smooth there."""
 ON_BOTH_SIDES = np.outer([-CLEAR, CLEAR], [1.0, 2.0, 3.0])
 """Samples (side, step) beside a singular place [degree], whose parabolas tell how high a quantity may reach there."""
 SPOILT = 1e-9
@@ -32,6 +35,8 @@ DISTANCES, STEPS = 33, (1e-3, 3e-5, 1e-6)
 close together, and the steps between these, relative to the distance: a rise is smooth at one of them."""
 SCATTER = 0.1
 """Least fourth difference of such five that is scatter, relative to how far a peak exceeds what may be reached."""
+ABOUT = np.linspace(-0.2, 0.2, 5)
+"""Places about a peak at which five samples each tell whether a signal is smooth, relative to its distance."""
 NEAREST, SMOOTH, GROWN = 1e-9, 0.01, 3.0
 """Infinite peaks: the least of those distances [degree], the scatter up to which samples are smooth, relative to their
 size, and their least growth, coming closer, while they are."""
@@ -145,13 +150,31 @@ def _scatters(sampled: Array, reached: Array, excess: Array) -> Array:
     return noisy & ~(grown & (excess == np.inf))
 
 
-def clear_of(angles: Array, part: Part | None, period: float) -> Array:
-    """Return the parts (start or end, nth, design) between angles (design, nth) [degree], NaN for none, and clear of
-    them, of a part of the period or of all of it."""
-    least = np.nanmin(angles, axis=1, keepdims=True)
-    start, end = np.broadcast_arrays(*part, least)[:2] if part else (least + CLEAR, least + period - CLEAR)
-    inside = np.sort(start + np.mod(angles - start, period), axis=1)
+def are_smooth(group: Group, signal: str, angle: Array, distance: Array, rise: Array) -> Array:
+    """Return whether a signal of each design is smooth about an angle [degree] at a distance from a singular place: it
+    scatters by less than a share of a rise."""
+    starts = angle[:, None] + distance[:, None] * ABOUT
+    angles = starts[:, None, :, None] + np.multiply.outer(distance, STEPS)[..., None, None] * np.arange(5.0)
+    rows = np.repeat(np.arange(len(angle)), math.prod(angles.shape[1:]))
+    (values,) = group.values((signal,), rows, angles.ravel())
+    with np.errstate(invalid="ignore"):
+        scatter = np.abs(np.diff(values.reshape(angles.shape), n=4))[..., 0].min(axis=1)
+        return (scatter < SCATTER * rise[:, None]).all(axis=1) & (rise < np.inf)
+
+
+def clear_of(angles: Array, distances: Array, part: Part | None, period: float) -> Array:
+    """Return the parts (start or end, nth, design) between angles, and clear of them by distances (design, nth)
+    [degree], NaN for none, of a part of the period or of all of it."""
+    if part:
+        start, end = np.broadcast_arrays(*part, angles[:, :1])[:2]
+    else:
+        first = np.nanargmin(angles, axis=1)[:, None]
+        at, away = (np.take_along_axis(numbers, first, axis=1) for numbers in (angles, distances))
+        start, end = at + away, at + period - away
+    inside = start + np.mod(angles - start, period)
+    order = np.argsort(inside, axis=1)
+    inside, away = (np.take_along_axis(numbers, order, axis=1) for numbers in (inside, distances))
     inside[~(inside <= end)] = np.nan
-    first, last = np.concatenate([start, inside + CLEAR], axis=1), np.concatenate([inside - CLEAR, end], axis=1)
+    first, last = np.concatenate([start, inside + away], axis=1), np.concatenate([inside - away, end], axis=1)
     last = np.where(np.isnan(last) & np.isfinite(first), end, last)  # of the last part
     return np.stack([first.T, last.T])

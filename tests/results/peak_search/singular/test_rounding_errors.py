@@ -137,7 +137,7 @@ def compare_with_four_bar(scene, four_bar, forces):
 
 @pytest.mark.parametrize("part", PARTS)
 def test_parts_clear_of_singular_places(part):
-    starts, ends = clear_of(SINGULAR, part, 360.0)
+    starts, ends = clear_of(SINGULAR, np.full(SINGULAR.shape, 0.01), part, 360.0)
     for k, expected in enumerate(PARTS[part]):
         parts = [(start, end) for start, end in zip(starts[:, k], ends[:, k], strict=True) if start < end]
         np.testing.assert_allclose(parts, expected, rtol=1e-12)
