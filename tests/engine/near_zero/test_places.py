@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from linksweep.engine.near_zero import places
-from linksweep.engine.near_zero.samples import BEYOND
+from linksweep.engine.near_zero.samples import BEYOND, HALF
+from linksweep.engine.peaks.samples import HALF as HALF_OF_TURN
 
 COUNT, COLUMNS = 24, 8
 
@@ -53,6 +54,10 @@ def test_each_change_of_sign_is_noted(seed):
     for column, noted in zip(rows.T, listed(places.note_crossings, rows), strict=True):
         changes = 1 + np.flatnonzero(np.diff(column < 0.0))
         assert [j for j in noted if j > 0] == changes.tolist()
+
+
+def test_a_digit_holds_every_place_of_a_piece():
+    assert 2 * (max(HALF, HALF_OF_TURN) + BEYOND) + 1 < places.BASE
 
 
 def test_more_places_than_a_number_holds_are_all_looked_at():
