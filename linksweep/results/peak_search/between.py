@@ -19,6 +19,11 @@ ONE = "_one"
 """Dim of designs, or of pieces of their turns, each with its own value of every parameter."""
 
 
+def driven_elsewhere(scene: Scene) -> bool:
+    """Return whether another part than the crank drives."""
+    return scene.drive != scene.mechanism.defaults.get("drive", "")
+
+
 def one_by_one(
     scene: Scene, designs: Array, table: Table, names: tuple[str, ...], own: Fields, places: InputForms
 ) -> tuple[Plan, Fields]:

@@ -43,7 +43,7 @@ from linksweep.results.peak_search.along_paths import (
 )
 from linksweep.results.peak_search.approaches import with_narrow_approaches
 from linksweep.results.peak_search.arcs import about_approaches_on_arcs, arc_ends, arcs, arcs_within
-from linksweep.results.peak_search.between import EVERYWHERE, ONE, PARTLY
+from linksweep.results.peak_search.between import EVERYWHERE, ONE, PARTLY, driven_elsewhere
 from linksweep.results.peak_search.groups import Group, all_at_once, assembled_groups, different, empty, groups
 from linksweep.results.peak_search.on_arcs import follow_arcs
 from linksweep.results.peak_search.paths import ASIDE, Part, about_approaches, about_breaks, turns
@@ -57,7 +57,6 @@ from linksweep.results.peak_search.pieces import (
 from linksweep.results.peak_search.singular.poles import (
     designs_with_candidates,
     designs_without_jams,
-    driven_elsewhere,
     may_have_poles,
 )
 from linksweep.results.peak_search.singular.rounding_errors import (

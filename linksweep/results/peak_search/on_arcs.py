@@ -15,6 +15,7 @@ from linksweep.engine.peaks.samples import HALF
 from linksweep.engine.quantity import LAST_UNJAMMED
 from linksweep.results.peak_search.along_paths import SignalPeak, angle_in_period, limits_by_polynomials, raise_to
 from linksweep.results.peak_search.arcs import NEAREST, arc_ends, steps_at_ends
+from linksweep.results.peak_search.between import driven_elsewhere
 from linksweep.results.peak_search.groups import Group, groups
 from linksweep.results.peak_search.paths import distinct
 from linksweep.results.peak_search.pieces import (
@@ -30,7 +31,7 @@ from linksweep.results.peak_search.pieces import (
     known_on_pieces,
     values_at,
 )
-from linksweep.results.peak_search.singular.poles import designs_without_jams, driven_elsewhere
+from linksweep.results.peak_search.singular.poles import designs_without_jams
 from linksweep.scene.pairs import Array, in_order, some_of
 from linksweep.scene.scene import Scene
 

@@ -20,6 +20,7 @@ from linksweep.results.peak_search.approaches import (
     approaches,
     approaches_of_turns,
 )
+from linksweep.results.peak_search.between import driven_elsewhere
 from linksweep.results.peak_search.friction.contacts import contact_angles
 from linksweep.results.peak_search.groups import Group, crossing
 from linksweep.results.peak_search.limits import graded_samples
@@ -38,8 +39,8 @@ ASIDE = 1e-9
 BESIDE = np.array([ASIDE, 1e-3, 0.01, 0.1, 0.3, 1.0, 2.0, 4.0, 7.0, 11.0, 16.0, 22.0, 30.0])
 """Distances from a break of the samples on either side, far enough to reach those of the fused search [degree]."""
 FARTHER_ASIDE = 1e-4, 0.01
-"""Distances from a break of more samples [degree]: those closest by may consist of rounding errors, and the higher side
-of a jump hides a summit close to the lower one."""
+"""Distances from a break of more samples, unless the crank drives [degree]: those closest by may consist of rounding
+errors, and the higher side of a jump hides a summit close to the lower one."""
 KINK_STEPS = 3
 """Steps of the false position towards a kink between two samples: a search finds it from there."""
 MOST_CUTS = 200
@@ -98,7 +99,7 @@ def turns(group: Any) -> Paths:
     even, quick = (np.broadcast_to(angles, (len(group.designs), len(angles))) for angles in (even, group.quick))
     graded = _graded_over_period(group)
     at_jumps = jump_angles(group)
-    sides, jumps = beside_breaks(np.concatenate([at_jumps, kinks(group)], axis=1)), both_sides(at_jumps)
+    sides, jumps = beside_breaks(group, np.concatenate([at_jumps, kinks(group)], axis=1)), both_sides(at_jumps)
     close = approach_samples(group)[:, ::7]
     # a piece between cuts has 15 nodes of its own: it needs fewer cuts than a search needs samples
     samples, edges = (
@@ -168,9 +169,10 @@ def both_sides(angles: Array, away: float = ASIDE) -> Array:
     return np.concatenate([angles - away, angles + away], axis=1)
 
 
-def beside_breaks(breaks: Array) -> Array:
+def beside_breaks(group: Group, breaks: Array) -> Array:
     """Return samples (design, sample) on both sides of each break [degree]."""
-    return np.concatenate([both_sides(breaks, away) for away in (ASIDE, *FARTHER_ASIDE)], axis=1)
+    distances = (ASIDE, *FARTHER_ASIDE) if driven_elsewhere(group.scene) else (ASIDE,)
+    return np.concatenate([both_sides(breaks, away) for away in distances], axis=1)
 
 
 def kinks(group: Group) -> Array:

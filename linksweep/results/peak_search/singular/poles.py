@@ -50,11 +50,6 @@ Candidates = tuple[Array, Array, Array]
 """Possible poles: the row of its design in a group, the angle, and the distance of the closest sample [degree]."""
 
 
-def driven_elsewhere(scene: Scene) -> bool:
-    """Return whether another part than the crank drives."""
-    return scene.drive != scene.mechanism.defaults.get("drive", "")
-
-
 def may_have_poles(scene: Scene, signals: tuple[str, ...]) -> bool:
     """Return whether any of these quantities may grow without bound inside a turn or an arc."""
     return "unbounded" in scene.mechanism.round_meanings and (_of_output(signals) or not surely_ok(scene))

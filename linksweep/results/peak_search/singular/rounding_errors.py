@@ -13,10 +13,10 @@ from typing import NamedTuple
 import numpy as np
 
 from linksweep.results.peak_search.arcs import arc_ends
-from linksweep.results.peak_search.between import PARTLY
+from linksweep.results.peak_search.between import PARTLY, driven_elsewhere
 from linksweep.results.peak_search.groups import Group
 from linksweep.results.peak_search.paths import Part
-from linksweep.results.peak_search.singular.poles import driven_elsewhere, pole_candidates
+from linksweep.results.peak_search.singular.poles import pole_candidates
 from linksweep.scene.pairs import Array
 
 CLEAR = 0.01
