@@ -2,8 +2,8 @@
 
 The samples are equal for all designs of a kind: a dense even grid, and geometric ones about both near-toggles, from a
 radian down to less than the narrowest spike. A peak is missed where a sample exceeds it by more than `ALLOWED`,
-relative to the peak, and by more than the sample's rounding errors: where other forces are a million times as large,
-samples next to each other scatter. Half of the machines that turn fully come near to a toggle, at margins of 1e-7 to
+relative to the peak, besides the sample's own rounding errors: where other forces are a million times as large, samples
+next to each other scatter. Half of the machines that turn fully come near to a toggle, at margins of 1e-7 to
 1e-1 of their lengths; four-bars of any lengths are of all Grashof classes, most of which move over part of a turn.
 Tables over the angle have few or many angles, even or nearly so, smooth or rough values, and all interpolations;
 functions of it are waves with a narrow bump between breaks.

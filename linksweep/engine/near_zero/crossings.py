@@ -10,7 +10,7 @@ Source: Dowell and Jarratt, A modified regula falsi method, BIT 11 (1971).
 
 from linksweep.engine.kernel.instructions import call
 from linksweep.engine.near_zero.places import next_place
-from linksweep.engine.near_zero.samples import BEYOND, MOST, most, note, place, sample, used_columns
+from linksweep.engine.near_zero.samples import BEYOND, MOST, note, place, sample, upper_bound, used_columns
 from linksweep.engine.peaks.zeros import (
     AT_TRIAL,
     FOUND,
@@ -57,13 +57,13 @@ def look_for_crossings(samples, noted, half, signal, signals, crossings, counts,
 
 def is_negative(samples, j, signal, signals):
     """Return whether a sample of a signal is negative by more than noise."""
-    return most(samples, j, signal, signals) < 0.0
+    return upper_bound(samples, j, signal, signals) < 0.0
 
 
 def may_be_noise(samples, j, signal, signals):
     """Return whether a sample of a signal has a value that is not clear of zero."""
     value = sample(samples, j, signal)
-    return abs(value) <= most(samples, j, signal, signals) - value
+    return abs(value) <= upper_bound(samples, j, signal, signals) - value
 
 
 def open_crossing(crossings, counts, lanes, lane, bracket, half, signal, owner, results):

@@ -37,7 +37,7 @@ MOST = 24
 SAME_ZERO = 1e-10
 """Distance of two zeros that are one."""
 NOISE_SHARE = 0.04
-"""Noise of a sample, in units of that which the most that it may be allows for."""
+"""Noise of a sample, in units of that for which its upper bound allows."""
 
 
 def place_samples(ends, owner, nth, lanes, lane, places, grades, x):
@@ -86,14 +86,14 @@ def place(samples, j):
     return x[j * lanes + lane]
 
 
-def most(samples, j, signal, signals):
-    """Return the most that a sample may be without noise: the third of its signals, after the opposites."""
+def upper_bound(samples, j, signal, signals):
+    """Return the highest value that a signal may have at a sample: the third of its signals, after the opposites."""
     return sample(samples, j, signal + 2 * signals)
 
 
 def noise(samples, j, signal, signals):
     """Return the noise of a sample."""
-    return NOISE_SHARE * (most(samples, j, signal, signals) - sample(samples, j, signal))
+    return NOISE_SHARE * (upper_bound(samples, j, signal, signals) - sample(samples, j, signal))
 
 
 def note(results, owner, tangent, half, signal, width):

@@ -19,8 +19,8 @@ def find_near_zero(
 ):  # fmt: skip
     """Write the events in blocks `first` … `last` of designs to `events`, and 1 to `left` of designs that are left.
 
-    The plan has three signals for each of the `kinds`: the signal, its opposite, and the most that it may be without
-    noise. `near` and `beyond` are tables for the places at which it comes near to zero, and crosses it.
+    The plan has three signals for each of the `kinds`: the signal, its opposite, and its upper bound, as far as
+    noise goes. `near` and `beyond` are tables for the places at which it comes near to zero, and crosses it.
     """
     own, signals, results = constants[0], len(kinds), (events, left)
     places, columns = len(x) // (2 * lanes), 3 * signals * lanes

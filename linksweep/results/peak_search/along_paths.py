@@ -25,7 +25,8 @@ NODES, SPANS = 10, (25.0, 5.0, 1.0, 0.2, 0.04)
 """Samples before a toggle from which a signal is extrapolated, and the distances from it of the farthest ones, in steps
 of a path. The first is a quarter of that to the next toggle: others may hide beyond."""
 SPANS_AT_POLES = (*SPANS, 0.008)
-"""The same for singular places: a force that rises a hundredfold within a hundredth of a degree may have a limit."""
+"""Distances of the farthest samples from a singular place, in steps of `STEP_AT_POLE`: a force that rises a
+hundredfold within 0.01 degree may have a limit there, too."""
 ALLOWED = 1e-10
 """Error of a limit, relative to it, from which on samples are taken closer to the toggle."""
 STEP_AT_POLE, OF_ROUNDING, KNOWN = 0.1, 32.0, 1e-3

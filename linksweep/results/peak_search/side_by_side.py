@@ -144,7 +144,7 @@ def _look(scene: Scene, limits: tuple[Limit, ...], designs: Array, cuts: Events)
 def _evaluated(scene: Scene, limits: tuple[Limit, ...], designs: Array) -> tuple[Plan, Fields]:
     """Return the plan of all signals of limits, each thrice, at places anywhere on a turn, and its inputs."""
     index, signals = scene.mechanism.index, [name for limit in limits for name in limit.signals]
-    outputs = [*signals, *map("opposite of {}".format, signals), *map("most of {}".format, signals)]
+    outputs = [*signals, *map("opposite of {}".format, signals), *map("upper bound of {}".format, signals)]
     places = ((ANYWHERE, (index, ONE)), (OF_HALF, (index, ONE)))
     own = {WIDTH: Field((ONE,), np.ones(len(designs)))}
     return one_by_one(scene, designs, _table(scene.table, limits), (*outputs, *WIDTHS), own, places)
@@ -167,17 +167,17 @@ def close_at(scene: Scene, limits: tuple[Limit, ...], designs: Array, angles: Ar
 
 @lru_cache(maxsize=64)
 def _table(table: Table, limits: tuple[Limit, ...]) -> Table:
-    """Return the table between samples, with opposites of the limits' signals, and the most that they may be."""
+    """Return the table between samples, with opposites and upper bounds of the limits' signals."""
     rows = [Row(planar.identity, (width,), (WIDTH,)) for width in WIDTHS]
     rows += [Row(planar.identity, (name,), (own,)) for name, own in ((TANGENT, ANYWHERE), (FAR, OF_HALF))]
     for limit in limits:
         for name, noise in zip(limit.signals, limit.noise, strict=True):
             rows.append(Row(planar.opposite, (f"opposite of {name}",), (name,)))
-            rows.append(Row(without_noise, (f"most of {name}",), (name, noise)))
+            rows.append(Row(upper_bound, (f"upper bound of {name}",), (name, noise)))
     between = table.between_samples
     return replace(between, rows=(*between.rows, *rows))
 
 
-def without_noise(signal: Number, noise: Number) -> Number:
-    """Return the most that a signal may be without its noise."""
+def upper_bound(signal: Number, noise: Number) -> Number:
+    """Return the highest value that a signal may have, as far as its noise may have lowered it."""
     return signal + NOISE * noise
