@@ -42,7 +42,7 @@ SAMPLES_PER_THREAD = 300_000
 MOST_REPEATED = 1.4
 """Designs in whole vectors for each design, at most, for designs side by side to pay: they take 0.7 of the time."""
 
-Numbers = np.ndarray | np.float64
+Numbers = np.ndarray | float
 """The value of a node: an array, or a single number where it has no dims."""
 
 
@@ -207,14 +207,14 @@ def aligned(plan: Plan, inputs: Fields, grid: Grid) -> dict[Node, Numbers]:
 
 def _align(plan: Plan, dims: frozenset[str], field: Field) -> Numbers:
     if not dims:
-        return np.float64(field.values)
+        return float(field.values)
     shape = iter((values := ordered(plan, field)).shape)
     return values.reshape([next(shape) if dim in dims else 1 for dim in (*plan.loops, plan.index)])
 
 
 def _field(dims: tuple[str, ...], value: Any, sizes: Sizes) -> Field:
-    if dims and value.ndim == len(dims):
-        return Field(dims, value)
+    if not dims or value.ndim == len(dims):
+        return Field(dims, np.asarray(value))
     return Field(dims, value.reshape(tuple(sizes[dim] for dim in dims)))  # np.reshape takes as long as a row of samples
 
 

@@ -28,7 +28,7 @@ class Interpreted:
                 place = place * size[dim] + digit[dim]
             constants[2 + k] = parameters[parameter_at[k] + place]
         here = self._at(constants, np.zeros(1), 0.0)
-        constants[:2] = [here[node].item() for node in self.of.constants[:2]]
+        constants[:2] = [np.asarray(here[node]).item() for node in self.of.constants[:2]]
 
     def enter(self, front: int, piece: int, sizes, parameters, parameter_at, constants: np.ndarray) -> None:
         designs = np.prod(sizes[1:], dtype=int)
@@ -43,19 +43,19 @@ class Interpreted:
         half = far if self.of.anywhere else np.repeat([0.0, 1.0], places.shape[1])
         values = self._at(constants, places.ravel(), half)
         for k, signal in enumerate(signals):
-            rows[k : places.size * len(signals) : len(signals)] = values[signal].ravel()
+            rows[k : places.size * len(signals) : len(signals)] = np.ravel(values[signal])
 
     def evaluate(self, constants, table, x: int, value: int, far: int, signal: int, first: int, last: int) -> None:
         lanes = table[:, first:last]
         here = self._at(constants, lanes[x], lanes[far])
-        every = [here[node].ravel() for node in self.of.signals]
+        every = [np.ravel(here[node]) for node in self.of.signals]
         lanes[value] = np.choose(lanes[signal].astype(int) if signal >= 0 else np.arange(last), every)
 
     def _at(self, constants: np.ndarray, tangent: np.ndarray, far: Any) -> Values:
         """Return the values of all signals at places."""
         plan, inputs, axes = self.of.plan, self.of.inputs, [1] * len(self.of.plan.loops)
         values: Values = {
-            node: np.full(axes, x) if node.dims else x for node, x in zip(inputs, constants[2:], strict=True)
+            node: np.full(axes, x) if node.dims else x for node, x in zip(inputs, constants[2:].tolist(), strict=True)
         }
         places = {self.of.tangent: tangent, self.of.far: np.broadcast_to(far, tangent.shape)}
         values |= {node: place.reshape([*axes, -1]) for node, place in places.items()}
