@@ -26,6 +26,7 @@ from linksweep.results.peak_search.paths import (
     jump_angles,
     kinks,
     near_toggle_samples,
+    over_whole_period,
     thinned,
     windows_about,
 )
@@ -59,8 +60,14 @@ def arc_ends(group: Any) -> tuple[Array, ...]:
 
 
 def arcs(group: Group) -> Paths:
-    """Return the one or two arcs on which each design can be assembled, without arcs on which no sample is ok."""
-    return _along(group, arc_ends(group), arc_ends(group))
+    """Return the arcs on which each design can be assembled, one or two a turn, without those on which no sample is
+    ok."""
+    return _along(group, arc_ends_of_whole_period(group), arc_ends(group))
+
+
+def arc_ends_of_whole_period(group: Group) -> tuple[Array, ...]:
+    """Return the `arc_ends` of the whole period: loads may take several turns."""
+    return tuple(over_whole_period(group, ends) for ends in arc_ends(group))
 
 
 def arcs_within(part: Part | Parts, group: Group, pieces: int = 1) -> Paths:
@@ -73,7 +80,7 @@ def arcs_within(part: Part | Parts, group: Group, pieces: int = 1) -> Paths:
 
 def about_approaches_on_arcs(group: Group) -> Paths:
     """Return a window about every closest approach on the arcs of each design."""
-    row, middle, half = _middles(arc_ends(group))
+    row, middle, half = _middles(arc_ends_of_whole_period(group))
     close = approaches(group.some(row), _angles(middle, half, _even(group)), ends_meet=False)
     return windows_about(close._replace(row=row[close.row]))
 
@@ -201,7 +208,7 @@ def within(paths: Paths, part: Part, scene: Scene) -> Paths:
         start = paths.cuts[:, :1] + np.mod(first - paths.cuts[:, :1], scene.period)
         twice = np.concatenate([paths.cuts, paths.cuts[:, 1:] + scene.period], axis=1)
         return paths._replace(cuts=np.clip(twice, start, start + (last - first)))
-    period = scene.period_of_motion
+    period = scene.period
     nearest, reach = np.round((0.5 * (first + last) - paths.middle) / period), 1 + int((last - first) // (2.0 * period))
     away = np.arange(-reach, reach + 1.0)  # periods from the part's middle in which an arc may still lie in the part
     copies = paths.some(np.tile(np.arange(len(paths.row)), len(away)))

@@ -39,8 +39,8 @@ ASIDE = 1e-9
 BESIDE = np.array([ASIDE, 1e-3, 0.01, 0.1, 0.3, 1.0, 2.0, 4.0, 7.0, 11.0, 16.0, 22.0, 30.0])
 """Distances from a break of the samples on either side, far enough to reach those of the fused search [degree]."""
 FARTHER_ASIDE = 1e-4, 0.01
-"""Distances from a break of more samples, unless the crank drives [degree]: those closest by may consist of rounding
-errors, and the higher side of a jump hides a summit close to the lower one."""
+"""Distances from a break of more samples, unless the crank drives at a steady speed [degree]: those closest by may
+consist of rounding errors, and the higher side of a jump hides a summit close to the lower one."""
 KINK_STEPS = 3
 """Steps of the false position towards a kink between two samples: a search finds it from there."""
 MOST_CUTS = 200
@@ -155,13 +155,18 @@ def _graded_over_period(group: Group, step: int = 1) -> Array:
     """Return the samples (design, sample) about the near-toggles of the whole period [degree], in order: all, or one of
     each `step` in a period of the motion."""
     one = np.sort(in_period(near_toggle_samples(group), group.scene.period_of_motion), axis=1)
-    return np.concatenate([in_order(one[:, ::step]) + start for start in _starts_of_motion(group)], axis=1)
+    return np.concatenate([in_order(one[:, ::step]) + start for start in starts_of_motion(group)], axis=1)
 
 
-def _starts_of_motion(group: Group) -> Array:
+def starts_of_motion(group: Group) -> Array:
     """Return the angles [degree] at which the motion begins anew within the whole period."""
     period = group.scene.period_of_motion
     return period * np.arange(round(group.scene.period / period))
+
+
+def over_whole_period(group: Group, angles: Array) -> Array:
+    """Return angles (design, nth) [degree] of one period of the motion, and those of all others of the whole period."""
+    return np.concatenate([angles + start for start in starts_of_motion(group)], axis=1)
 
 
 def both_sides(angles: Array, away: float = ASIDE) -> Array:
@@ -171,7 +176,8 @@ def both_sides(angles: Array, away: float = ASIDE) -> Array:
 
 def beside_breaks(group: Group, breaks: Array) -> Array:
     """Return samples (design, sample) on both sides of each break [degree]."""
-    distances = (ASIDE, *FARTHER_ASIDE) if driven_elsewhere(group.scene) else (ASIDE,)
+    more = driven_elsewhere(group.scene) or group.scene.changes_speed
+    distances = (ASIDE, *FARTHER_ASIDE) if more else (ASIDE,)
     return np.concatenate([both_sides(breaks, away) for away in distances], axis=1)
 
 
@@ -187,7 +193,7 @@ def jump_angles(group: Group) -> Array:
     turn, designs = group.scene.mechanism.period, len(group.designs)
     turns = range(round(group.scene.period / turn))
     angles = [group.number(jump) + turn * k for jump in group.scene.jumps() for k in turns]
-    located = [group.zeros(kind) + start for kind in JUMPS for start in _starts_of_motion(group)]
+    located = [group.zeros(kind) + start for kind in JUMPS for start in starts_of_motion(group)]
     located += [jam + turn * k for jam in _jam_angles(group) for k in turns]
     jumps = np.concatenate([np.empty((designs, 0)), *(jump[:, None] for jump in angles), *located], axis=1)
     return distinct(np.concatenate([jumps, contact_angles(group, both_sides(jumps))], axis=1))

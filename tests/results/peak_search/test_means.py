@@ -6,12 +6,13 @@ turns with the crank, and its coupler presses with T/(c·sin μ).
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from itertools import pairwise
 
 import numpy as np
 import pytest
+import xarray as xr
 from references import mp
 
 import linksweep as ls
@@ -159,6 +160,17 @@ def test_means_over_part_of_a_turn(kind):
     assert float(peaks.F43_mean) == pytest.approx(force, rel=1e-10)
     assert float(peaks.omega4_mean) == pytest.approx(10.0 * ratio, rel=1e-10, abs=1e-10)
     assert float(peaks.T12_mean) == pytest.approx(-TORQUE * ratio, rel=1e-10, abs=1e-10)
+
+
+@pytest.mark.parametrize("turn", [0, 1])
+@pytest.mark.parametrize("kind", SWINGING)
+def test_a_load_of_one_turn_in_two_has_half_the_mean(kind, turn):
+    angles = np.arange(0.0, 720.0, 90.0)
+    torque = xr.DataArray(np.where(angles // 360.0 == turn, TORQUE, 0.0), {"theta2": angles}, "theta2")
+    load = ls.Load("rocker", torque=torque, interpolation="step")
+    steady = float(ls.peaks(swinging(kind), of=["T12_mean"]).T12_mean)
+    mean = float(ls.peaks(replace(swinging(kind), loads=[load]), of=["T12_mean"]).T12_mean)
+    assert mean == pytest.approx(0.5 * steady, rel=1e-9, abs=1e-9)
 
 
 @pytest.mark.parametrize("kind", SWINGING)

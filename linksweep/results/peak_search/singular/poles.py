@@ -23,6 +23,7 @@ from linksweep.results.peak_search.between import PARTLY
 from linksweep.results.peak_search.friction.jams import jammed_designs, may_jam
 from linksweep.results.peak_search.groups import Group, all_at_once
 from linksweep.results.peak_search.limits import limits_of
+from linksweep.results.peak_search.paths import starts_of_motion
 from linksweep.scene.dimensions import side_by_side
 from linksweep.scene.pairs import Array
 from linksweep.scene.scene import Scene
@@ -113,8 +114,10 @@ def designs_with_candidates(scene: Scene, designs: Array, signals: tuple[str, ..
 
 @singledispatch
 def pole_candidates(group: Any, signals: tuple[str, ...]) -> Candidates:
-    """Return the possible poles of these signals."""
-    return concatenated([_dead_centres_and_jams(group, signals), _change_points(group)])
+    """Return the possible poles of these signals in the whole period: loads may take several turns."""
+    row, angle, step = concatenated([_dead_centres_and_jams(group, signals), _change_points(group)])
+    starts = starts_of_motion(group)
+    return np.repeat(row, len(starts)), np.add.outer(angle, starts).ravel(), np.repeat(step, len(starts))
 
 
 def concatenated(parts: list[Candidates]) -> Candidates:

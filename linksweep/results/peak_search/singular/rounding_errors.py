@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from linksweep.results.peak_search.arcs import arc_ends
+from linksweep.results.peak_search.arcs import arc_ends_of_whole_period
 from linksweep.results.peak_search.between import PARTLY, driven_elsewhere
 from linksweep.results.peak_search.groups import Group
 from linksweep.results.peak_search.paths import Part
@@ -65,7 +65,7 @@ def singular_places(group: Group, signals: tuple[str, ...]) -> Singular:
     """Return the possible poles of these designs; and the ends of their arcs, unless the crank drives: then forces are
     computed from those of the machine by its crank, which grow without bound there."""
     row, angle, _ = pole_candidates(group, signals)
-    ends = arc_ends(group) if driven_elsewhere(group.scene) else ()
+    ends = arc_ends_of_whole_period(group) if driven_elsewhere(group.scene) else ()
     if not ends:
         return Singular(row, angle, np.zeros(len(row), dtype=bool))
     toggles = np.concatenate(ends, axis=1)

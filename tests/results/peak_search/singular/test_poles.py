@@ -1,6 +1,7 @@
 """Forces grow without bound at dead centres of every drive in any frame, jams and change points, and nowhere else."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -50,6 +51,21 @@ def test_forces_at_dead_centres_are_unbounded_in_any_frame(case, torque):
         assert values == [math.inf] * 6, f"{frame} degree"
         at = ls.check(scene).dead_centre_angle.values
         assert min(abs(at - float(peaks.F32_peak_at))) < 1e-9
+
+
+@pytest.mark.parametrize("turn", [0, 1])
+@pytest.mark.parametrize("case", CASES)
+def test_a_load_of_one_turn_in_two_is_unbounded_at_its_dead_centres(case, turn):
+    mechanism, drive, _ = machines(17.3)[case]
+    links = {name: ls.Link(link.length, 0.0, 0.0) for name, link in mechanism.parts.items() if hasattr(link, "length")}
+    masses = {name: 0.0 for name in ("slider_mass", "block_mass", "block_inertia") if hasattr(mechanism, name)}
+    angles = np.arange(0.0, 720.0, 90.0)
+    torque = xr.DataArray(np.where(angles // 360.0 == turn, STEADY, 0.0), {"theta2": angles}, "theta2")
+    load = ls.Load("crank", torque=torque, interpolation="step")
+    scene = ls.Scene(replace(mechanism, **links, **masses), 30.0, loads=[load], drive=drive)
+    peaks = ls.peaks(scene, of=["F32"])
+    assert (float(peaks.F32_peak), int(peaks.status)) == (math.inf, UNBOUNDED)
+    assert 360.0 * turn <= float(peaks.F32_peak_at) < 360.0 * (turn + 1)
 
 
 @pytest.mark.parametrize("case", CASES)
