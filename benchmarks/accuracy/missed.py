@@ -6,7 +6,7 @@ relative to the peak, besides the sample's own rounding errors: where other forc
 next to each other scatter. Half of the machines that turn fully come near to a toggle, at margins of 1e-7 to
 1e-1 of their lengths; four-bars of any lengths are of all Grashof classes, most of which move over part of a turn.
 Tables over the angle have few or many angles, even or nearly so, smooth or rough values, and all interpolations;
-functions of it are waves with a narrow bump between breaks.
+loads that are functions of it are waves with a narrow bump between breaks, speeds are waves.
 """
 
 from __future__ import annotations
@@ -326,17 +326,54 @@ def _by(drive: str, machines: Callable[[Random, int], ls.Scene]) -> Callable[[Ra
 def _with_table(machines: Callable[[Random, int], ls.Scene], link: str) -> Callable[[Random, int], ls.Scene]:
     def scene(random: Random, n: int) -> ls.Scene:
         """Return machines with a torque and a force over the angle besides, each design with values of its own."""
-        count, turns, kind = random.choice([9, 24, 72]), random.integers(1, 3), random.choice(INTERPOLATIONS)
-        angles = np.sort((np.arange(count) + random.uniform(0.0, 0.8, count)) * (360.0 * turns / count))
-        waves = np.cos(np.radians(np.outer(np.arange(1, 4), angles) / turns) + random.uniform(0.0, 6.3, (3, 1)))
-        rough = 10.0 ** random.uniform(-3.0, 0.0, (n, 1)) * random.normal(size=(n, count))
-        values = 30.0 * (random.normal(size=(n, 3)) @ waves + rough)
-        table = xr.DataArray(values, {"theta2": angles}, ("design", "theta2"))
-        load = {"force": (table, 9.0)} if link == "slider" else {"torque": table}
+        table, kind = _table(random, n)
+        load = {"force": (30.0 * table, 9.0)} if link == "slider" else {"torque": 30.0 * table}
         without = machines(random, n)
-        return replace(without, loads=(*without.loads, ls.Load(link, **load, interpolation=str(kind))))
+        return replace(without, loads=(*without.loads, ls.Load(link, **load, interpolation=kind)))
 
     return scene
+
+
+def _at_speeds(machines: Callable[[Random, int], ls.Scene]) -> Callable[[Random, int], ls.Scene]:
+    def scene(random: Random, n: int) -> ls.Scene:
+        """Return machines whose speed changes with the angle, each design by values of its own; some turn round."""
+        changes, _ = _table(random, n)
+        return replace(machines(random, n), omega2=_speed(random, n) * (1.0 + 0.1 * changes), alpha2=None)
+
+    return scene
+
+
+def _at_a_function(machines: Callable[[Random, int], ls.Scene]) -> Callable[[Random, int], ls.Scene]:
+    def scene(random: Random, n: int) -> ls.Scene:
+        """Return machines whose speed is the same function of the angle; some turn round."""
+        size, turns = random.uniform(-0.3, 0.3, 4), random.integers(1, 3)
+        order, phase, mean = (
+            random.integers(0, 10, (4, 1)),
+            random.uniform(0.0, 6.3, (4, 1)),
+            float(_speed(random, 1)[0]),
+        )
+
+        def speed(theta2: Array) -> Array:
+            return mean * (1.0 + size @ np.cos(np.radians(order * theta2) / turns + phase))
+
+        return replace(machines(random, n), omega2=speed, alpha2=None)
+
+    return scene
+
+
+def _speed(random: Random, n: int) -> xr.DataArray:
+    """Return speeds of either sign [rad/s]."""
+    return _number(random.uniform(1.0, 20.0, n) * random.choice([-1.0, 1.0], n))
+
+
+def _table(random: Random, n: int) -> tuple[xr.DataArray, str]:
+    """Return values of some units over the angle, in one or two turns, of each design its own; and an interpolation."""
+    count, turns, kind = random.choice([9, 24, 72]), random.integers(1, 3), str(random.choice(INTERPOLATIONS))
+    angles = np.sort((np.arange(count) + random.uniform(0.0, 0.8, count)) * (360.0 * turns / count))
+    waves = np.cos(np.radians(np.outer(np.arange(1, 4), angles) / turns) + random.uniform(0.0, 6.3, (3, 1)))
+    rough = 10.0 ** random.uniform(-3.0, 0.0, (n, 1)) * random.normal(size=(n, count))
+    values = random.normal(size=(n, 3)) @ waves + rough
+    return xr.DataArray(values, {"theta2": angles}, ("design", "theta2")), kind
 
 
 def _with_function(machines: Callable[[Random, int], ls.Scene], link: str) -> Callable[[Random, int], ls.Scene]:
@@ -405,4 +442,10 @@ FAMILIES = {
     "slider-crank with friction and a table": Family(_with_table(_slider_crank(friction=True), "slider"), 90.0),
     "four-bar with a function": Family(_with_function(_four_bar, "rocker")),
     "slider-crank with friction and a function": Family(_with_function(_slider_crank(friction=True), "slider"), 90.0),
+    "four-bar at speeds in a table": Family(_at_speeds(_four_bar)),
+    "six-bar of any lengths by its output at speeds in a table": Family(
+        _at_speeds(_by("output", _any_six_bar)), share=0.01
+    ),
+    "slider-crank with friction at speeds in a table": Family(_at_speeds(_slider_crank(friction=True)), 90.0, 0.5),
+    "four-bar at a speed that is a function": Family(_at_a_function(_four_bar)),
 }

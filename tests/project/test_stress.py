@@ -223,7 +223,7 @@ def test_the_command_of_six_bars_prints_a_row_for_each_kind(capsys):
 def test_missed_peaks_of_a_kind_are_counted_by_a_command(capsys, monkeypatch):
     assert missed.main(["--designs", "12", "--only", "any lengths"]) == 0
     kinds = [f"{machine} of any lengths" for machine in ("four-bar", "six-bar", "knuckle-joint press")]
-    kinds += [f"{kinds[1]} by its output"]
+    kinds += [f"{kinds[1]} by its output", f"{kinds[1]} by its output at speeds in a table"]
     assert [line.split(":")[0] for line in capsys.readouterr().out.splitlines()] == kinds
     peaks = ls.peaks
     monkeypatch.setattr(ls, "peaks", lambda scene, **angles: peaks(scene, **angles) * (1.0 if angles else 0.9))

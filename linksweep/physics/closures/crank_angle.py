@@ -71,6 +71,14 @@ def polynomial_on_piece(angle_on_piece: Number, origin: Number, *terms: Number) 
     return total
 
 
+def speed_on_piece(angle_on_piece: Number, origin: Number, *terms: Number) -> tuple[Number, Number]:
+    """Return a speed ω that is such a polynomial, and its acceleration α = ω·dω/dθ."""
+    away, omega, slope = angle_on_piece - origin, terms[-1], 0.0
+    for term in terms[-2::-1]:
+        omega, slope = term + away * omega, omega + away * slope
+    return omega, omega * slope
+
+
 def cubics_on_piece(angle_on_piece: Number, *numbers: Number) -> Number:
     """Return the value of a function of the crank's angle that is another cubic from each of several knots on.
 

@@ -37,7 +37,8 @@ def one_by_one(
         if not (isinstance(form, tuple) and index in form)
     )
     request = plan(table, names, (*forms, *((name, field.dims) for name, field in own.items()), *places))
-    fields = inputs_along(ONE, request, inputs, places_of(inputs.sizes, designs))
+    others = inputs._replace(fields={name: field for name, field in inputs.fields.items() if name not in own})
+    fields = inputs_along(ONE, request, others, places_of(inputs.sizes, designs))
     return request, {**fields, **own}
 
 

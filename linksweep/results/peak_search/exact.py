@@ -41,16 +41,11 @@ from linksweep.results.peak_search.along_paths import (
 from linksweep.results.peak_search.approaches import with_narrow_approaches
 from linksweep.results.peak_search.arcs import about_approaches_on_arcs, arc_ends, arcs, arcs_within
 from linksweep.results.peak_search.between import EVERYWHERE, ONE, PARTLY, driven_elsewhere
+from linksweep.results.peak_search.friction.directions import divides, with_known_directions
 from linksweep.results.peak_search.groups import all_at_once, assembled_groups, different, empty, groups
 from linksweep.results.peak_search.on_arcs import follow_arcs
 from linksweep.results.peak_search.paths import ASIDE, Part, about_approaches, about_breaks, turns
-from linksweep.results.peak_search.pieces import (
-    AT_ONCE,
-    divides,
-    follow_pieces,
-    known_on_pieces,
-    rubbing_signals,
-)
+from linksweep.results.peak_search.pieces import AT_ONCE, follow_pieces, known_on_pieces, rubbing_signals
 from linksweep.results.peak_search.singular.poles import (
     designs_with_candidates,
     designs_without_jams,
@@ -129,13 +124,14 @@ def _by_paths(
 
 def _follow_on_pieces(scene: Scene, peaks: dict[str, SignalPeak]) -> Array:
     """Write the peaks of designs of which pieces of their turns or arcs are enough; return the others."""
-    designs = different(scene, (*peaks, "assembly"))
+    every = different(scene, (*peaks, "assembly"))
+    designs = with_known_directions(scene, every)
     assembly = all_at_once(scene, designs).assembly()
     turning = designs_without_jams(scene, designs[assembly == EVERYWHERE])
     follow_pieces(scene, turning, peaks)
     partly = designs[assembly == PARTLY]
     followed = turning, np.setdiff1d(partly, follow_arcs(scene, partly, peaks))
-    return np.setdiff1d(designs, np.concatenate(followed))
+    return np.setdiff1d(every, np.concatenate(followed))
 
 
 def _follow_all(

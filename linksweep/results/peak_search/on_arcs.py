@@ -22,7 +22,7 @@ from linksweep.results.peak_search.pieces import (
     AT_ONCE,
     BEYOND,
     BORDERS,
-    LOADED_AT_ONCE,
+    CHANGING_AT_ONCE,
     Pieces,
     between,
     breaks_and_near_toggles,
@@ -96,7 +96,7 @@ def follow_arcs(scene: Scene, designs: Array, peaks: dict[str, SignalPeak]) -> A
         return designs
     sound, signals = designs if _jams_end_arcs(scene) else designs_without_jams(scene, designs), tuple(peaks)
     left = [np.setdiff1d(designs, sound, assume_unique=True)]
-    at_once = AT_ONCE if scene.steady else LOADED_AT_ONCE
+    at_once = AT_ONCE if scene.steady else CHANGING_AT_ONCE
     for group in groups(scene, signals, sound, at_once, at_once):
         every = _arcs(group)
         arcs = some_of(every, every.length > 0.0)

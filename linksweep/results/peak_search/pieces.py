@@ -1,9 +1,9 @@
 """Search for peaks on pieces of the turn: between the angles at which friction jumps or forces have a kink.
 
 The direction of sliding is known on each piece, so that all signals are smooth there, ends included. A piece also ends
-at each narrow near-toggle, so that its samples can be dense about it, and where a half turn does. Loads over the angle
-are polynomials: of tables between their knots, of which a piece has a few, and of functions on the whole piece. Designs
-are searched side by side, piece by piece, each piece as a turn that follows it there and back.
+at each narrow near-toggle, so that its samples can be dense about it, and where a half turn does. Loads and speeds over
+the angle are polynomials: of tables between their knots, of which a piece has a few, and of functions on the whole
+piece. Designs are searched side by side, piece by piece, each piece as a turn that follows it there and back.
 """
 
 from __future__ import annotations
@@ -25,6 +25,7 @@ from linksweep.physics.algebra import planar
 from linksweep.physics.closures import crank_angle
 from linksweep.results.peak_search.along_paths import SignalPeak, angle_in_period, put
 from linksweep.results.peak_search.between import ONE
+from linksweep.results.peak_search.friction.directions import divides, speed_at_one_angle
 from linksweep.results.peak_search.groups import Group, groups
 from linksweep.results.peak_search.paths import distinct
 from linksweep.results.peak_search.side_by_side import FASTEST
@@ -40,9 +41,9 @@ ENDS, HALF_TURN = ("piece_from", "piece_to"), "far_half"
 WIDTHS = "width_at_start", "width_at_end"
 """Inputs of a piece besides its ends: the widths of near-toggles as seen from them."""
 MIDDLE, ANGLE = "piece_middle", "angle_on_piece"
-"""Input of a piece with loads over the angle, its middle as such a tangent; and the angle from there [rad]."""
-LOADED_AT_ONCE = 2048
-"""Designs with loads over the angle whose pieces are searched together: they have more."""
+"""Input of a piece over whose angle something changes, its middle as such a tangent; and the angle from there [rad]."""
+CHANGING_AT_ONCE = 2048
+"""Designs with loads or speeds over the angle whose pieces are searched together: they have more."""
 NARROWEST = 0.02
 """Width of a near-toggle below which a design has many samples on each of its pieces."""
 NARROW = 0.5
@@ -103,12 +104,6 @@ class Pieces(NamedTuple):
         return np.tan(np.radians(0.5 * away))
 
 
-def divides(scene: Scene) -> bool:
-    """Return whether all jumps of a scene are those of friction, so that signals are smooth between them."""
-    machine = scene.mechanism
-    return bool(machine.directions()) and not scene.approaches() and len(scene.jumps()) == len(machine.jumps())
-
-
 def rubbing_signals(scene: Scene, signals: tuple[str, ...]) -> tuple[str, ...]:
     """Return those signals of a scene that depend on the direction of sliding; none where pieces are not enough."""
     machine = scene.mechanism
@@ -122,17 +117,17 @@ def rubbing_signals(scene: Scene, signals: tuple[str, ...]) -> tuple[str, ...]:
 
 
 def known_on_pieces(scene: Scene) -> bool:
-    """Return whether pieces of the cycle, between which all jumps lie, state the motion and the loads over the
+    """Return whether pieces of the cycle, between which all jumps lie, state the motion, and what changes over the
     angle."""
     machine = scene.mechanism
     divided = scene.unloaded.steady if machine.directions() else not machine.jumps()  # a moved cylinder may turn slides
     simple = not (scene.table.contacts or scene.approaches()) and scene.period_of_motion == machine.period
-    return divided and simple and machine.fastest <= FASTEST and (scene.steady or _loads(scene) is not None)
+    return divided and simple and machine.fastest <= FASTEST and (scene.steady or _over_angle(scene) is not None)
 
 
 def follow_pieces(scene: Scene, designs: Array, peaks: dict[str, SignalPeak]) -> None:
     """Write the peaks of designs, from a search of their pieces."""
-    at_once = AT_ONCE if scene.steady else LOADED_AT_ONCE
+    at_once = AT_ONCE if scene.steady else CHANGING_AT_ONCE
     for whole in groups(scene, tuple(peaks), designs, at_once, at_once) if peaks else ():
         for half, group in _by_samples(whole):
             highest = highest_on_pieces(group, _pieces(group, half), tuple(peaks), half)
@@ -141,9 +136,9 @@ def follow_pieces(scene: Scene, designs: Array, peaks: dict[str, SignalPeak]) ->
 
 
 def _by_samples(group: Group) -> Iterator[tuple[int, Group]]:
-    """Yield the designs of a group by the number of samples in half of each piece: few on the short pieces of loads
+    """Yield the designs of a group by the number of samples in half of each piece: few on short pieces between changes
     over the angle, where no near-toggle is narrow."""
-    narrow = (group.near_toggles()[1] < NARROWEST).any(axis=1) | (_loads(group.scene) is None)
+    narrow = (group.near_toggles()[1] < NARROWEST).any(axis=1) | (_over_angle(group.scene) is None)
     for half, some in ((FEW, np.flatnonzero(~narrow)), (HALF, np.flatnonzero(narrow))):
         if len(some):
             yield half, group.some(some)
@@ -205,7 +200,7 @@ def _directions_at(group: Group, pieces: Pieces, share: Array) -> Array:
     scene, shape = group.scene, (len(pieces.counts), pieces.start.shape[1])
     names, angle = scene.mechanism.directions(), pieces.start + share * (pieces.end - pieces.start)
     places = {TANGENT: pieces.tangents(angle), FAR: pieces.half}
-    own = {name: _of_pieces(values) for name, values in places.items()}
+    own = {name: _of_pieces(values) for name, values in places.items()} | speed_at_one_angle(group)
     request, inputs = group.one_by_one(scene.table.between_samples, names, np.arange(shape[0]), own, ())
     values = evaluate(request, inputs, scene.grid(1), dict(zip((ONE, PIECE), shape, strict=True)))
     return np.stack([np.broadcast_to(aligned(values[name], (ONE, PIECE)), shape) for name in names])
@@ -215,7 +210,7 @@ def _between_jumps(group: Group) -> Pieces:
     """Return the pieces of the whole cycle between jumps, narrow near-toggles, and ends of half turns or knots."""
     breaks, narrow = breaks_and_near_toggles(group)
     ends = [*breaks, narrow]
-    if _loads(group.scene) is None:
+    if _over_angle(group.scene) is None:
         away = np.abs(np.mod(_side_by_side(breaks)[:, :, None] - BORDERS + 180.0, 360.0) - 180.0)
         ends.append(np.where((away < BEYOND).any(axis=1), np.nan, BORDERS))
     cuts = distinct(_side_by_side(ends))
@@ -229,12 +224,13 @@ def breaks_and_near_toggles(group: Group) -> tuple[list[Array], Array]:
     turns = np.arange(0.0, period, scene.mechanism.period)
     located = (group.zeros("jump")[..., None] + turns).reshape(designs, -1)
     frame = _in_one_row(group.number(scene.mechanism.near_toggle_angle)[:, None])
-    loads, jumps = _loads(scene), [group.number(jump)[:, None] + turns for jump in scene.jumps()]
-    breaks = [np.mod(angles - frame, period) for angles in (*jumps, located, *([loads.cuts[None]] if loads else []))]
+    changing, jumps = _over_angle(scene), [group.number(jump)[:, None] + turns for jump in scene.jumps()]
+    cuts = [changing.cuts[None]] if changing else []
+    breaks = [np.mod(angles - frame, period) for angles in (*jumps, located, *cuts)]
     middles, widths = group.near_toggles()
     with np.errstate(invalid="ignore"):
         narrow = np.where(widths < NARROW, middles, np.nan)
-    if loads and group.limits is None:  # pieces are short in any case, and many designs share them
+    if changing and group.limits is None:  # pieces are short in any case, and many designs share them
         narrow = middles[:1]
     return breaks, (narrow[..., None] + turns).reshape(len(narrow), -1)
 
@@ -326,11 +322,11 @@ def _on_own_pieces(group: Group, pieces: Pieces) -> tuple[Table, dict[str, Field
     numbers = pieces.tangents(pieces.start), pieces.tangents(pieces.end), pieces.half
     own = dict(zip((*ENDS, HALF_TURN), numbers, strict=True))
     own |= {on_piece(name): values for name, values in zip(directions, pieces.directions, strict=True)}
-    table, loads = _table_on_pieces(scene.table, directions), _loads(scene)
-    if loads is not None:
+    table, changing = _table_on_pieces(scene.table, directions), _over_angle(scene)
+    if changing is not None:
         own |= {MIDDLE: pieces.tangents(0.5 * (pieces.start + pieces.end))}
-        own |= _on_pieces(loads, group, pieces)
-        table = _table_on_pieces(scene.table, directions, loads.rows(ANGLE))
+        own |= _on_pieces(changing, group, pieces)
+        table = _table_on_pieces(scene.table, directions, changing.rows(ANGLE))
     return table, {name: _of_pieces(values) for name, values in own.items()}
 
 
@@ -339,12 +335,12 @@ def _of_pieces(values: Array) -> Field:
     return Field((PIECE,), values[0]) if len(values) == 1 else Field((ONE, PIECE), values)
 
 
-def _on_pieces(loads: Polynomials, group: Group, pieces: Pieces) -> dict[str, Array]:
-    """Return the numbers of loads over the angle on pieces."""
+def _on_pieces(changing: Polynomials, group: Group, pieces: Pieces) -> dict[str, Array]:
+    """Return the numbers of polynomials on pieces."""
     scene = group.scene
     frame = _in_one_row(group.number(scene.mechanism.near_toggle_angle)[:, None])
     places = places_of(scene.at_one_angle.inputs.sizes, group.designs[:, None])
-    return loads.on_pieces(pieces.start + frame, pieces.end - pieces.start, places)
+    return changing.on_pieces(pieces.start + frame, pieces.end - pieces.start, places)
 
 
 def on_piece(name: str) -> str:
@@ -353,21 +349,21 @@ def on_piece(name: str) -> str:
 
 
 @lru_cache(maxsize=64)
-def _table_on_pieces(table: Table, directions: tuple[str, ...], loads: tuple[Row, ...] = ()) -> Table:
-    """Return the table between samples with places on pieces, and with these rows of loads over the angle."""
+def _table_on_pieces(table: Table, directions: tuple[str, ...], changing: tuple[Row, ...] = ()) -> Table:
+    """Return the table between samples with places on pieces, and with these rows of what changes over the angle."""
     between = table.between_samples
     known = {NEAR_WIDTH: WIDTHS[0], FAR_WIDTH: WIDTHS[1]} | {name: on_piece(name) for name in directions}
     rows = (
         Row(crank_angle.place_on_piece, ("half_tangent",), (ALONG, END, *ENDS)),
         Row(crank_angle.angle_on_piece, (ANGLE,), ("half_tangent", MIDDLE)),
         *(Row(planar.identity, (name,), (own,)) for name, own in known.items()),
-        *loads,
+        *changing,
     )
     return replace(between, rows=(*between.rows, *rows))
 
 
-def _loads(scene: Scene) -> Polynomials | None:
-    """Return the loads over the angle of a scene as polynomials, if there are any and they are such."""
+def _over_angle(scene: Scene) -> Polynomials | None:
+    """Return the loads and speeds over the angle of a scene as polynomials, if there are any and they are such."""
     return None if scene.steady else polynomials(scene)
 
 
@@ -393,8 +389,9 @@ def _widths(pieces: Pieces, start: Array, end: Array, angles: Array, widths: Arr
 
 
 def _imaginary_root(distance: Array, length: Array, height: Array) -> Array:
-    """Return the imaginary part of √(z/(1 − z)), z = (distance + i·height)/length."""
+    """Return the imaginary part of √(z/(1 − z)), z = (distance + i·height)/length: inf of z = 1."""
     below = (length - distance) ** 2 + height * height
-    size = np.sqrt((distance * distance + height * height) / below)
-    real = (distance * (length - distance) - height * height) / below
-    return np.sqrt(0.5 * np.maximum(size - real, 0.0))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        size = np.sqrt((distance * distance + height * height) / below)
+        real = (distance * (length - distance) - height * height) / below
+    return np.where(below > 0.0, np.sqrt(0.5 * np.maximum(size - real, 0.0)), np.inf)

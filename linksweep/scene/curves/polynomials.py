@@ -1,14 +1,15 @@
-"""Find the polynomials that loads over the angle are, interval by interval of the cycle.
+"""Find the polynomials that loads and speeds over the angle are, interval by interval of the cycle.
 
 Cubic splines, pchip curves, straight lines and steps are cubics between two neighbouring angles of their arrays, the
 knots; smooth functions are polynomials of more terms in short intervals. So is each input of the engine that is a
 multiple of one. Its polynomial is that through samples of its interval; one more shows whether the input is one. The
-samples lie inside, so that a jump at a knot has its limit on either side.
+samples lie inside, so that a jump at a knot has its limit on either side. The acceleration that follows from a speed is
+that of its polynomial.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import partial
 from itertools import chain
 from typing import TYPE_CHECKING, NamedTuple
@@ -29,6 +30,8 @@ if TYPE_CHECKING:
 
 Array = np.ndarray
 
+SPEED = "omega2", "alpha2"
+"""Speed of the crank, and the acceleration that follows from one that changes."""
 CUBIC = 4
 """Coefficients of a cubic."""
 CHECKED = 0.1
@@ -52,7 +55,8 @@ class Polynomials(NamedTuple):
 
     `knots` [degree] are in order, the first again after a period. The coefficients (interval, power, design dims…) of
     each input are those of powers of the angle from the interval's `origin` [rad]. The cycle is cut into pieces at
-    `cuts`: where an input jumps or bends, and so often that a piece has no more than `per_piece` knots.
+    `cuts`: where an input jumps or bends, and so often that a piece has no more than `per_piece` knots. From a speed
+    that `accelerates` follows alpha2.
     """
 
     knots: Array
@@ -60,6 +64,7 @@ class Polynomials(NamedTuple):
     inputs: dict[str, Field]
     cuts: Array
     per_piece: int
+    accelerates: bool
 
     def rows(self, angle: str) -> tuple[Row, ...]:
         """Return the rows that make the inputs from the angle on a piece, by its name, and numbers of the piece."""
@@ -67,9 +72,22 @@ class Polynomials(NamedTuple):
         for name, field in self.inputs.items():
             terms = field.values.shape[1]
             numbers = chain.from_iterable((_origin(nth), *_terms(name, nth, terms)) for nth in range(self.per_piece))
-            function = crank_angle.polynomial_on_piece if self.per_piece == 1 else crank_angle.cubics_on_piece
-            rows.append(Row(function, (name,), (angle, *numbers)))
+            outputs = SPEED if self.accelerates and name == SPEED[0] else (name,)
+            rows.append(Row(self._function(outputs), outputs, (angle, *numbers)))
         return tuple(rows)
+
+    def _function(self, outputs: tuple[str, ...]) -> Callable:
+        """Return the function that makes inputs from the numbers of a piece."""
+        if outputs == SPEED:
+            return crank_angle.speed_on_piece
+        return crank_angle.polynomial_on_piece if self.per_piece == 1 else crank_angle.cubics_on_piece
+
+    def turns_one_way(self) -> Field:
+        """Return where the speed surely keeps its sign: in no interval do the other terms add up to the first one."""
+        speed = self.inputs[SPEED[0]]
+        half, powers = np.radians(0.5 * np.diff(self.knots)), np.arange(1, speed.values.shape[1])
+        others = np.einsum("ip,ip...->i...", half[:, None] ** powers, np.abs(speed.values[:, 1:]))
+        return Field(speed.dims, (others < np.abs(speed.values[:, 0])).all(axis=0))
 
     def on_pieces(self, start: Array, length: Array, places: Mapping[str, Array]) -> dict[str, Array]:
         """Return the numbers of pieces of designs at these places, by the names that `rows` take.
@@ -107,11 +125,10 @@ def _terms(name: str, nth: int, count: int) -> tuple[str, ...]:
 def polynomials(scene: Scene) -> Polynomials | None:
     """Return the inputs of a scene that change over the angle as polynomials; None where they are none.
 
-    That is so of functions that jump or bend elsewhere than at their breaks, of the pressure of ideal cycles, and where
-    the speed of the crank changes.
+    That is so of functions that jump or bend elsewhere than at their breaks, and of the pressure of ideal cycles.
     """
     tables = [array for array in scene.arrays.values() if "theta2" in array.coords]
-    if scene.steady or scene.changes_speed or not (tables or scene.functions):
+    if scene.steady or not (tables or scene.functions):
         return None
     knots = _knots_of_functions(scene, tables) if scene.functions else _knots(scene, tables)
     if knots is None or np.diff(knots).min() < SHORTEST:
@@ -122,11 +139,15 @@ def polynomials(scene: Scene) -> Polynomials | None:
     grid = scene.grid(np.mod((middle[:, None] + half[:, None] * places).ravel(), scene.period))
     from_middle = 0.0 if per_piece == 1 else 1.0  # where the origin is, of which there may be several on a piece
     changing = {name: field for name, field in scene.at(grid).inputs.fields.items() if grid.dim in field.dims}
+    if accelerates := scene.changes_speed and scene.alpha2 is None:
+        del changing[SPEED[1]]
     places, half_lengths = places + from_middle, np.radians(half)
     inputs = {name: _polynomials(field, grid.dim, places, half_lengths) for name, field in changing.items()}
     known = {name: field for name, field in inputs.items() if field is not None}
     origins = middle - from_middle * half
-    return Polynomials(knots, origins, known, knots[cuts], per_piece) if len(known) == len(inputs) else None
+    if len(known) < len(inputs):
+        return None
+    return Polynomials(knots, origins, known, knots[cuts], per_piece, accelerates)
 
 
 def _knots(scene: Scene, tables: list[xr.DataArray]) -> Array:
@@ -152,11 +173,11 @@ def _knots_of_functions(scene: Scene, tables: list[xr.DataArray]) -> Array | Non
 
 def _cuts(scene: Scene, knots: Array) -> list[int]:
     """Return the numbers of the knots at which pieces start: all of pchip curves, whose curvature jumps there, so that
-    a peak beside a knot may lie between two samples."""
+    a peak beside a knot may lie between two samples, and of speeds, of whose acceleration that is true."""
     corners = np.array([jump for jump in scene.jumps() if not hasattr(jump, "dims")])
     away = np.mod(knots[:, None] - corners + 0.5 * scene.mechanism.period, scene.mechanism.period)
     corner = (np.abs(away - 0.5 * scene.mechanism.period) < ROUNDED).any(axis=1)
-    corner |= any(getattr(load, "interpolation", None) == "pchip" for load in scene.loads)
+    corner |= scene.changes_speed or any(getattr(load, "interpolation", None) == "pchip" for load in scene.loads)
     cuts = [0]
     for k in range(1, len(knots) - 1):
         if corner[k] or k - cuts[-1] == MOST_KNOTS or knots[k + 1] - knots[cuts[-1]] > LONGEST_PIECE:

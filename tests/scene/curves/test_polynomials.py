@@ -1,4 +1,4 @@
-"""Loads over the angle as cubics between the angles of their tables."""
+"""Loads and speeds over the angle as polynomials between the angles of tables, or the breaks of functions."""
 
 import math
 from dataclasses import replace
@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import xarray as xr
+from scipy.interpolate import CubicSpline
 
 import linksweep as ls
 from linksweep.physics.closures.crank_angle import angle_on_piece
@@ -57,11 +58,9 @@ def test_cubics_on_pieces_are_the_load(kind, turns):
 
 
 def test_what_is_no_cubic_is_none():
-    """Functions that bend, changing speeds, ideal cycles; and scenes without loads over the angle."""
+    """Functions that bend, ideal cycles; and scenes without loads over the angle."""
     assert polynomials(scene(ls.Load("rocker", torque=lambda theta2: abs(np.cos(np.radians(theta2 + 10.3)))))) is None
     assert polynomials(scene(ls.Load("rocker", torque=1.0))) is None
-    speed = 10.0 + 0.1 * table()
-    assert polynomials(scene(ls.Load("rocker", torque=table()), omega2=speed)) is None
     engine = ls.SliderCrank(ls.Link(0.04, 1.0, 0.0), ls.Link(0.14, 1.0, 0.0), slider_mass=0.5)
     gas = ls.GasPressure(
         bore=0.086,
@@ -129,6 +128,72 @@ def test_smooth_functions_are_polynomials_between_their_breaks():
     assert of_gas.dims == ("design",)
     at_middles = of_gas.values[:, 0]
     np.testing.assert_allclose(at_middles, np.outer(at_middles[:, 0], (bore / 0.05) ** 2), rtol=1e-12)
+
+
+def wave(theta2):
+    return 10.0 + 3.0 * np.sin(np.radians(theta2)) - np.cos(np.radians(1.5 * theta2))
+
+
+@pytest.mark.parametrize("kind", ["table", "function"])
+def test_speeds_over_the_angle_are_polynomials_with_their_accelerations(kind):
+    """Test speeds of two turns against splines of scipy, and against a function and its derivative by hand."""
+    speed = 10.0 + 0.1 * table(2) if kind == "table" else wave
+    known = polynomials(scene(ls.Load("rocker", torque=3.0), omega2=speed))
+    assert known.per_piece == 1 and known.knots[-1] - known.knots[0] == 720.0
+    ((row,), designs) = known.rows("angle"), np.repeat(np.arange(DESIGNS), len(known.knots) - 1)
+    start, length = np.tile(known.knots[:-1], DESIGNS), np.tile(np.diff(known.knots), DESIGNS)
+    numbers = known.on_pieces(start, length, {"design": designs})
+    assert row.outputs == ("omega2", "alpha2")
+    for share in (1e-9, 0.3, 0.62, 1.0 - 1e-9):
+        angle = start + share * length
+        both = row.function(np.radians((share - 0.5) * length), *(numbers[name] for name in row.inputs[1:]))
+        if kind == "table":
+            values = np.concatenate([speed, speed[:, :1]], axis=1)
+            angles = np.append(speed.theta2, speed.theta2[0] + 720.0)
+            spline = CubicSpline(angles, values, axis=1, bc_type="periodic")
+            omega, slope = (spline(angle, nu)[designs, np.arange(len(angle))] for nu in (0, 1))
+        else:
+            omega, turns = wave(angle), np.radians(angle)
+            slope = np.radians(3.0 * np.cos(turns) + 1.5 * np.sin(1.5 * turns))
+        np.testing.assert_allclose(both[0], omega, atol=2e-12)
+        np.testing.assert_allclose(both[1], omega * np.degrees(slope), atol=1e-9)
+
+
+def test_an_acceleration_of_its_own_stays_what_it_is():
+    known = polynomials(scene(ls.Load("rocker", torque=3.0), omega2=wave, alpha2=lambda theta2: wave(2.0 * theta2)))
+    assert [row.outputs for row in known.rows("angle")] == [("omega2",), ("alpha2",)]
+
+
+@pytest.mark.parametrize("machine", ["four-bar", "slider-crank with friction"])
+@pytest.mark.parametrize("speed", ["table", "function", "turning round"])
+def test_peaks_at_speeds_that_change_reach_the_densest_samples(machine, speed):
+    """Test speeds of two turns, and those of which one design turns round, with its slider."""
+    omega2 = {"table": 10.0 + 0.3 * table(2), "function": wave, "turning round": 1.5 * table()}[speed]
+    moved = scene(ls.Load("rocker", torque=3.0), omega2=omega2, gravity=(0.0, -9.81))
+    if machine != "four-bar":
+        links = ls.Link(0.1, 1.0, 1e-3, 0.05), ls.Link(0.3, 1.0, 1e-3, 0.1)
+        slider = ls.SliderCrank(*links, slider_mass=0.5, offset=0.02, friction=0.1)
+        moved = replace(moved, mechanism=slider, loads=[ls.Load("slider", force=(5.0, 2.0))])
+    known = polynomials(moved)
+    assert known is not None
+    if speed != "function":
+        assert known.turns_one_way().values.tolist() == [speed == "table"] * DESIGNS
+    peaks, dense = ls.peaks(moved, of=["F12", "F14y", "T12"]), ls.peaks(moved, of=["F12", "F14y", "T12"], theta2=30_000)
+    assert (peaks.status == 0).all()
+    for name in (name for name in map(str, peaks.data_vars) if name.endswith(("_peak", "_max", "_min"))):
+        sign, size = -1.0 if name.endswith("min") else 1.0, dense[f"{name.split('_')[0]}_peak"]
+        excess = sign * (peaks[name] - dense[name]) / size
+        assert excess.min() > -1e-10 and excess.max() < 1e-3, name
+
+
+def test_a_table_at_a_change_point_has_peaks():
+    """Test a machine whose pieces end at a toggle, and one a little off it: no width of a near-toggle is NaN there."""
+    links = (ls.Link(length, 1.0, 0.01) for length in (1.0, 2.0, 2.0))
+    angles = np.arange(0.0, 360.0, 10.0)
+    push = xr.DataArray(50.0 + 10.0 * np.cos(np.radians(3.0 * angles)), {"theta2": angles}, "theta2")
+    ground = xr.DataArray([3.0, 2.9], dims="design")
+    peaks = ls.peaks(ls.Scene(ls.FourBar(*links, ground=ground), 1.0, loads=[ls.Load("rocker", torque=push)]))
+    assert peaks.F12_peak[0] == np.inf and 0.0 < peaks.F12_peak[1] < 1e3
 
 
 def test_functions_without_declared_breaks_or_with_narrow_bumps_are_searched_along_paths():
