@@ -208,11 +208,11 @@ def _jam_angles(group: Group) -> list[Array]:
     return [angles["jam_angle"].values for angles in angles_of if "jam_angle" in angles]
 
 
-def distinct(angles: Array) -> Array:
+def distinct(angles: Array, least: float = ASIDE) -> Array:
     """Return angles (design, nth) in order, those made equal that differ by rounding, as where two slides turn round
-    together: between samples so close a signal shows no slope."""
+    together: between samples so close a signal shows no slope. `least` is the least difference of others."""
     x = np.sort(angles, axis=1)
-    close = np.diff(x, axis=1, prepend=-np.inf) < ASIDE
+    close = np.diff(x, axis=1, prepend=-np.inf) < least
     first = np.where(close, 0, np.arange(x.shape[1]))
     return np.take_along_axis(x, np.maximum.accumulate(first, axis=1), axis=1)
 
