@@ -15,7 +15,8 @@ pytestmark = pytest.mark.filterwarnings("ignore:.*the spline through its values"
 
 DESIGNS = 40
 NEAR = (0.0, -1e-6, 1e-6, -1e-9, 1e-9)
-"""Distances from the stated angle [degree]: where a force jumps, its peak is the limit on one side."""
+"""Distances from the stated angle [degree]: where a force jumps, its peak is the limit on one side. By as much as the
+samples on one side differ from each other they consist of rounding errors."""
 THETA2 = np.arange(0.0, 360.0, 15.0)
 TABLE = xr.DataArray(10.0 + 3.0 * np.sin(np.radians(THETA2)), {"theta2": THETA2}, "theta2")
 
@@ -82,7 +83,8 @@ def test_peaks_are_attained_at_their_angles_and_no_sample_exceeds_them(name):
         some = np.flatnonzero(np.isfinite(value) & np.isfinite(angle))
         near = values_near(scene, str(variable), some, angle[some])
         error = np.fmin.reduce(np.abs(near - value[some]))  # beyond the end of an arc there is no value
-        assert np.all(error <= 1e-5 * np.abs(value[some])), variable
+        rounding = np.nan_to_num(np.fmin(*np.abs(near[1:3] - near[3:])))  # at that of an arc by another drive
+        assert np.all(error <= 1e-5 * np.abs(value[some]) + rounding), variable
         sample = np.broadcast_to(samples[variable], DESIGNS)[some]
         excess = value[some] - sample if str(variable).endswith("_min") else sample - value[some]
         assert np.all(excess <= 1e-10 * np.abs(value[some])), variable
