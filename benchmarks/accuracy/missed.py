@@ -347,11 +347,8 @@ def _at_a_function(machines: Callable[[Random, int], ls.Scene]) -> Callable[[Ran
     def scene(random: Random, n: int) -> ls.Scene:
         """Return machines whose speed is the same function of the angle; some turn round."""
         size, turns = random.uniform(-0.3, 0.3, 4), random.integers(1, 3)
-        order, phase, mean = (
-            random.integers(0, 10, (4, 1)),
-            random.uniform(0.0, 6.3, (4, 1)),
-            float(_speed(random, 1)[0]),
-        )
+        order, phase = random.integers(0, 10, (4, 1)), random.uniform(0.0, 6.3, (4, 1))
+        mean = float(_speed(random, 1)[0])
 
         def speed(theta2: Array) -> Array:
             return mean * (1.0 + size @ np.cos(np.radians(order * theta2) / turns + phase))

@@ -9,7 +9,7 @@ that of its polynomial.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from functools import partial
 from itertools import chain
 from typing import TYPE_CHECKING, NamedTuple
@@ -30,8 +30,8 @@ if TYPE_CHECKING:
 
 Array = np.ndarray
 
-SPEED = "omega2", "alpha2"
-"""Speed of the crank, and the acceleration that follows from one that changes."""
+SPEED, ACCELERATION = "omega2", "alpha2"
+"""Inputs: the speed of the crank, and the acceleration that may follow from one that changes."""
 CUBIC = 4
 """Coefficients of a cubic."""
 CHECKED = 0.1
@@ -72,19 +72,16 @@ class Polynomials(NamedTuple):
         for name, field in self.inputs.items():
             terms = field.values.shape[1]
             numbers = chain.from_iterable((_origin(nth), *_terms(name, nth, terms)) for nth in range(self.per_piece))
-            outputs = SPEED if self.accelerates and name == SPEED[0] else (name,)
-            rows.append(Row(self._function(outputs), outputs, (angle, *numbers)))
+            if self.accelerates and name == SPEED:
+                rows.append(Row(crank_angle.speed_on_piece, (SPEED, ACCELERATION), (angle, *numbers)))
+            else:
+                function = crank_angle.polynomial_on_piece if self.per_piece == 1 else crank_angle.cubics_on_piece
+                rows.append(Row(function, (name,), (angle, *numbers)))
         return tuple(rows)
-
-    def _function(self, outputs: tuple[str, ...]) -> Callable:
-        """Return the function that makes inputs from the numbers of a piece."""
-        if outputs == SPEED:
-            return crank_angle.speed_on_piece
-        return crank_angle.polynomial_on_piece if self.per_piece == 1 else crank_angle.cubics_on_piece
 
     def turns_one_way(self) -> Field:
         """Return where the speed surely keeps its sign: in no interval do the other terms add up to the first one."""
-        speed = self.inputs[SPEED[0]]
+        speed = self.inputs[SPEED]
         half, powers = np.radians(0.5 * np.diff(self.knots)), np.arange(1, speed.values.shape[1])
         others = np.einsum("ip,ip...->i...", half[:, None] ** powers, np.abs(speed.values[:, 1:]))
         return Field(speed.dims, (others < np.abs(speed.values[:, 0])).all(axis=0))
@@ -140,7 +137,7 @@ def polynomials(scene: Scene) -> Polynomials | None:
     from_middle = 0.0 if per_piece == 1 else 1.0  # where the origin is, of which there may be several on a piece
     changing = {name: field for name, field in scene.at(grid).inputs.fields.items() if grid.dim in field.dims}
     if accelerates := scene.changes_speed and scene.alpha2 is None:
-        del changing[SPEED[1]]
+        del changing[ACCELERATION]
     places, half_lengths = places + from_middle, np.radians(half)
     inputs = {name: _polynomials(field, grid.dim, places, half_lengths) for name, field in changing.items()}
     known = {name: field for name, field in inputs.items() if field is not None}

@@ -32,4 +32,4 @@ def speed_at_one_angle(group: Group) -> dict[str, Field]:
     if not group.scene.changes_speed:
         return {}
     speed = group.scene.at_one_angle.omega2.isel({group.scene.mechanism.index: 0})
-    return {SPEED[0]: Field((ONE,), group.number(speed))}
+    return {SPEED: Field((ONE,), group.number(speed))}
