@@ -347,3 +347,14 @@ def test_a_function_has_no_gradient():
     best = ls.objective(PRESS, SIZES, minimize=lambda peaks: peaks.F32_peak, of=["F32"])
     with pytest.raises(ValueError, match="name of a result"):
         best.gradient(best.x0)
+
+
+@pytest.mark.parametrize(
+    ("part", "given"), [({"between": (10, 60)}, r"between = \(10, 60\)"), ({"theta2": 8}, "theta2 = 8")]
+)
+def test_samples_and_parts_of_the_cycle_have_no_gradients(part, given):
+    """A gradient of the whole cycle's peak points elsewhere than the values of a search."""
+    of = ls.objective(PRESS, MAY_BE, minimize="F32_peak", **part)
+    for search in (lambda: of.gradient(of.x0), lambda: of.plain_value(of.x0), of.optimum):
+        with pytest.raises(ValueError, match=f"{given}: gradients are those.*leave it out"):
+            search()

@@ -30,6 +30,9 @@ from linksweep.scene.scene import Scene
 
 Measure = Callable[[xr.Dataset], Any]
 
+PARTS = "between", "theta2", "theta"
+"""Arguments of `peaks` for a part of the cycle, or samples of it."""
+
 
 @dataclass(frozen=True, eq=False)
 class Objective:
@@ -160,8 +163,13 @@ class Objective:
         -------
         float
             The worst over the scene's own dims; with `maximize` the negative.
+
+        Raises
+        ------
+        ValueError
+            If the objective is a function and not a name, or of samples or a part of the cycle.
         """
-        self._require_name()
+        self._require_gradients()
         return self.sign * self.function.value(self.target, self._numbers(x), "max" if self.sign > 0.0 else "min")
 
     def gradient(self, x: Any) -> np.ndarray:
@@ -180,9 +188,9 @@ class Objective:
         Raises
         ------
         ValueError
-            If the objective is a function and not a name.
+            If the objective is a function and not a name, or of samples or a part of the cycle.
         """
-        self._require_name()
+        self._require_gradients()
         return self.sign * self.function.gradient(self.target, self._numbers(x), "max" if self.sign > 0.0 else "min")
 
     def optimum(self, *, method: str = "SLSQP", multistart: Any = None, minimax: int = 0) -> Any:
@@ -210,8 +218,8 @@ class Objective:
         Raises
         ------
         ValueError
-            If the objective is a function and not a name, a Dataset lacks a parameter, a method is unknown, or minimax
-            is asked for a result without rises, such as "T12_rms".
+            If the objective is a function and not a name, or of samples or a part of the cycle, a Dataset lacks a
+            parameter, a method is unknown, or minimax is asked for a result without rises, such as "T12_rms".
 
         Examples
         --------
@@ -222,12 +230,16 @@ class Objective:
         >>> bool(best.allowed and best.fun < lightest(lightest.x0))
         True
         """
-        self._require_name()
+        self._require_gradients()
         return local_optimum(self, method, multistart, minimax)
 
-    def _require_name(self) -> None:
+    def _require_gradients(self) -> None:
         advice = 'a search by gradients needs the name of a result, as minimize="F32_peak"'
         refuse([] if self.target else [f"minimize is a function: {advice}"])
+        advice = "leave it out, or search by values alone, as differential_evolution does"
+        given = {name: value for name in PARTS if (value := self.options.get(name)) is not None}
+        words = f"gradients are those of the whole cycle's peak: {advice}"
+        refuse([f"{name} = {quote(value)}: {words}" for name, value in given.items()])
 
     def _numbers(self, x: Any) -> np.ndarray:
         x = np.asarray(x, dtype=float)
@@ -277,14 +289,14 @@ def objective(
         are functions, all pins and the torque besides.
     subject_to : mapping of str to pair, default None
         Least and largest value of results by name, each in the result's unit [any], None for no bound:
-        {"transmission_angle_min": (40, None), "swing": (50, None)}, names as in `linksweep.sensitivities`. They are in
-        `.constraints`, and in `.optimum()`.
+        {"transmission_angle_min": (40, None), "swing": (50, None)}, names as in `linksweep.sensitivities`, over the
+        whole cycle. They are in `.constraints`, and in `.optimum()`.
     fluctuation : float, default 0.02
         Coefficient of speed fluctuation of "flywheel_inertia" [1].
     pins : mapping of str to Bearing, default None
         Bearings, {"B": ls.Bearing(capacity=...)}, of which "L10_B" and "L10h_B" take the capacity.
     **options
-        Further arguments of `peaks`, such as theta2.
+        Further arguments of `peaks`, such as between or theta2: then without gradients.
 
     Returns
     -------
