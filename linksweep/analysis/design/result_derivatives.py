@@ -42,6 +42,7 @@ from linksweep.results.derivatives.of_peaks import (
     UNBOUNDED,
     ZERO,
     peak_derivatives,
+    size_of,
     turning_point_derivatives,
     unlike,
 )
@@ -205,8 +206,7 @@ def _of_both(scene: Scene, value: xr.DataArray, above: Derived, below: Derived) 
     for path in above.slopes:
         one, other = (np.sign(side.value) * side.slopes[path] for side in (above, below))
         slopes[path] = xr.where(upper, one, other)
-        number = free(scene)[path][0]
-        apart = unlike(one, other, value, 0.0 if number is None else number)
+        apart = unlike(one, other, value, size_of(*free(scene)[path]))
         corners[path] = equal & apart | xr.where(upper, above.corners[path], below.corners[path])
     status = xr.where(upper, above.status, below.status)
     tie = (status == OK) & (sum(corners.values()) > 0)

@@ -57,7 +57,9 @@ EQUAL = 1e-10
 ALIKE = 1e-8
 """Difference of two derivatives that are alike, relative to the larger one."""
 ROUNDING = 1e-12
-"""Rounding of a derivative, relative to the peak over the parameter."""
+"""Rounding of a derivative, relative to the peak over the parameter's size."""
+RADIAN = 180.0 / np.pi
+"""Size of all parameters that are angles [degree]: sines and cosines change as fast at 0 as elsewhere."""
 
 
 class PeakDerivatives(NamedTuple):
@@ -182,10 +184,17 @@ def _side(pairs: Pairs, name: str, angles: Array, peak: Array) -> Array:
     return np.take_along_axis(places, np.argmin(away, axis=0)[None], axis=0)[0]
 
 
-def unlike(one: Any, other: Any, peak: Any, number: Any) -> Any:
-    """Return whether the derivatives of two equal rises to a parameter differ by more than their errors."""
-    rounding = ROUNDING * abs(peak) / abs(xr.where(number == 0.0, np.inf, number))
-    return abs(one - other) > ALIKE * np.maximum(abs(one), abs(other)) + rounding
+def size_of(number: Any, kind: str) -> Any:
+    """Return the size of a parameter to which the rounding of derivatives is related; inf for one that is 0."""
+    if kind == "angle":
+        return RADIAN
+    number = 0.0 if number is None else value_of(number)
+    return xr.where(number == 0.0, np.inf, abs(number))
+
+
+def unlike(one: Any, other: Any, peak: Any, size: Any) -> Any:
+    """Return whether derivatives of two equal rises to a parameter of this size differ by more than their errors."""
+    return abs(one - other) > ALIKE * np.maximum(abs(one), abs(other)) + ROUNDING * abs(peak) / size
 
 
 def _corners(
@@ -204,11 +213,6 @@ def _corners(
     if len(row):
         rivals, known = rise_derivatives(pairs.some(row), name, to, angle, top if largest else -top)
         for k, path in enumerate(to):
-            apart = unlike(rivals[k], slopes[k, row], peak[row], _over(pairs, _number(pairs, path))[row])
+            apart = unlike(rivals[k], slopes[k, row], peak[row], _over(pairs, size_of(*pairs.scene.numbers[path]))[row])
             corners[k, row[apart | ~known]] = True
     return corners
-
-
-def _number(pairs: Pairs, path: str) -> Any:
-    value, _ = pairs.scene.numbers[path]
-    return 0.0 if value is None else value_of(value)
