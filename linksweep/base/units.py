@@ -52,7 +52,7 @@ KINDS = {
         ("velocity", "100 km/h", "m/s, cm/s, mm/s, km/h, mph, in/s, ft/s"),
         ("acceleration", "9.81 m/s^2", "m/s^2, cm/s^2, mm/s^2, in/s^2, ft/s^2, g0"),
         ("density", "7.75 g/cm^3", "kg/m^3, g/cm^3, lb/in^3, lb/ft^3, slug/ft^3, blob/in^3"),
-        ("pressure", "12 bar", "Pa, kPa, MPa, bar, mbar, psi, atm"),
+        ("pressure", "12 bar", "Pa, kPa, MPa, GPa, bar, mbar, psi, atm"),
         ("power", "1.5 kW", "W, kW, MW, mW, hp"),
         ("energy", "40 J", "J, kJ, MJ, mJ, kWh, cal"),
         ("spring_rate", "12 N/mm", "N/m, N/cm, N/mm, kN/m, lbf/in, lbf/ft"),
@@ -74,7 +74,7 @@ FINITE = "must be a finite number, at most 1.8e308"
 _PI = Fraction("3.14159265358979323846264338327950288419716939937510")
 _INCH, _POUND, _GRAVITY = Fraction("0.0254"), Fraction("0.45359237"), Fraction("9.80665")
 _FOOT, _LBF = 12 * _INCH, _POUND * _GRAVITY
-_PREFIXES = {"M": 6, "k": 3, "": 0, "c": -2, "m": -3, "u": -6}
+_PREFIXES = {"G": 9, "M": 6, "k": 3, "": 0, "c": -2, "m": -3, "u": -6}
 _POWERS = {"m": 0, "g": -3, "s": 0, "N": 0, "Pa": 0, "bar": 5, "W": 0, "J": 0, "V": 0, "A": 0, "ohm": 0}
 _SIZES = {
     prefix + unit: Fraction(10) ** (power + own) for unit, own in _POWERS.items() for prefix, power in _PREFIXES.items()

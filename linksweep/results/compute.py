@@ -122,6 +122,12 @@ def require(scene: Any, *capabilities: str) -> None:
         refuse([f"scene is of {missing}"])
 
 
+def require_one_branch(scene: Scene) -> None:
+    """Raise ValueError for a machine of which both branches are asked for."""
+    for dim, path in scene.mechanism.both_branches.items():
+        refuse([f'{path} = "both": must be one of open, crossed; take one with ls.scene_at(scene, {dim}="open")'])
+
+
 def angles_missing(scene: Scene) -> list[str]:
     """Return the problem of each array over the angle that has no angles as its coordinate."""
     index = scene.mechanism.index

@@ -62,8 +62,9 @@ def position_equation(scene: Scene, theta2: Any, *, threads: int | None = None) 
     formulas, roots = mechanism.position_equation
     both = replace(scene, mechanism=replace(mechanism, branch="both"), drive="crank", loads=())
     grid = both.grid(angles)
-    fields = compute(both.at(grid), grid, tuple(formulas))
-    order = (*both.inputs.sizes, grid.dim)
+    there = both.at(grid)
+    fields = compute(there, grid, tuple(formulas))
+    order = (*there.inputs.sizes, grid.dim)
     page = sweep(both, angles, of=list(roots))
     coefficients = {name: variable(fields[name], "1", formula, order) for name, formula in formulas.items()}
     for name, formula in roots.items():

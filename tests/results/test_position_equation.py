@@ -1,5 +1,7 @@
 """K1 … K5 and A … F of document 2 (ME 470) against its formulas in 60 digits, and its roots against both branches."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -48,6 +50,14 @@ def test_it_is_the_sheets(ground_angle):
             result = at.sel(branch=branch)
             assert result.theta4.item() == pytest.approx(theta4 + ground_angle, abs=1e-12)
             assert result.theta3.item() == pytest.approx(theta3 + ground_angle, abs=1e-12)
+
+
+@pytest.mark.parametrize("motion", ["omega2", "alpha2"])
+def test_a_motion_over_the_angle_changes_nothing(motion):
+    over_angle = {motion: lambda theta2: 30.0 + np.sin(np.radians(theta2))}
+    page = ls.position_equation(replace(scene(**LENGTHS), **over_angle), 33.0)
+    for name, value in sheet(33.0, **LENGTHS).items():
+        assert page[name].item() == pytest.approx(float(value), abs=1e-14), name
 
 
 def test_constants_know_no_angle_and_each_says_its_formula():

@@ -21,7 +21,7 @@ from linksweep.base.checked_number import checked_number
 from linksweep.base.validate import Rule, refuse
 from linksweep.engine.threads import limits_threads
 from linksweep.results.changed import quantities_with
-from linksweep.results.compute import quantity_problems, requested, require
+from linksweep.results.compute import quantity_problems, requested, require, require_one_branch
 from linksweep.results.dataset import design_coordinates, origin_attributes, with_units
 from linksweep.results.peaks import peaks
 from linksweep.results.sweep import sweep
@@ -142,8 +142,7 @@ def speed_limit(scene: Scene, of: str, *, below: float, threads: int | None = No
     require(scene, "drives")
     (name,) = requested("of", of, scene)[:1] or [""]
     refuse(_problems(scene))
-    several = 'mechanism.branch = "both": must be one of open, crossed; ask for each'
-    refuse([several] if scene.mechanism.both_branches else [])
+    require_one_branch(scene)
     refuse(quantity_problems("of", name, forces_of(scene), scene))
     below = checked_number("below", below, LIMITS[scene.table.quantity[name].units])
     parts = scene.table.quantity[name].components

@@ -25,7 +25,7 @@ def mean_and_amplitude(largest: Any, least: Any) -> tuple[Any, Any]:
 def fatigue_safety(mean: Any, amplitude: Any, endurance: Any, static: Any) -> Any:
     """Return the safety by Goodman, with the tensile strength, or by Soderberg, with the yield strength."""
     with np.errstate(divide="ignore"):
-        return 1.0 / (amplitude / endurance + np.maximum(mean, 0.0) / static)
+        return 1.0 / (amplitude / endurance + np.fmax(mean, 0.0) / static)  # an unbounded cycle has no mean
 
 
 def buckling_load(area: Any, second_moment: Any, length: Any, E: Any, yield_strength: Any) -> Any:

@@ -74,14 +74,15 @@ def size_links(
         Results over `link` and the design dims:
 
         - `thickness` or `width` [m], `mass` [kg] of the bar, `safety` [1] that it reaches
-        - `status`: ok; not_reached where no measure gives that safety, as where a bar's own inertia loads it: NaN.
+        - `status`: ok; not_reached where no measure gives that safety, as where a bar's own inertia loads it, or
+          nothing does: NaN.
 
         `linksweep.scene_at` returns the scene with these bars.
 
     Raises
     ------
     ValueError
-        If a link is no Bar, or a number is out of bounds.
+        If a link is no Bar, a number is out of bounds, or branch="both".
 
     Notes
     -----
@@ -115,7 +116,8 @@ def size_links(
     def excess(log: Any) -> Any:
         """Return the logarithm of the safety over the required one, at logarithms of the measures."""
         ds = strength(_with(scene, roles, vary, np.exp(log)), without_life, **options)
-        return np.log(_least_safety(ds) / required)
+        with np.errstate(divide="ignore"):  # where forces are unbounded
+            return np.log(_least_safety(ds) / required)
 
     start = joined([getattr(scene.mechanism.parts[role], vary) for role in roles], "link", roles)
     log: Any = _solved(excess, np.log(start), STEEPNESS[vary])
@@ -158,6 +160,7 @@ def _least_safety(ds: xr.Dataset) -> Any:
 
 def _with(scene: Scene, roles: list[str], vary: str, sizes: Any) -> Scene:
     """Copy a scene with other measures of its bars."""
+    sizes = sizes.drop_attrs()  # of what they are computed from
     numbers = {f"{role}.{vary}": sizes.sel(link=role).reset_coords(drop=True) for role in roles}
     plain = {path: float(size) if size.ndim == 0 else size for path, size in numbers.items()}
     return replaced(replace(scene, section=None), plain)

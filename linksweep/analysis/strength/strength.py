@@ -19,7 +19,7 @@ from linksweep.analysis.strength.material import Material
 from linksweep.base.checked_number import checked_number
 from linksweep.base.validate import Number, Rule, choice_problems, name_problems, quote, refuse
 from linksweep.engine.threads import limits_threads
-from linksweep.results.compute import requested, require, require_scene
+from linksweep.results.compute import requested, require, require_one_branch, require_scene
 from linksweep.results.dataset import design_coordinates, flags, joined, provenance, with_units
 from linksweep.results.peaks import peaks
 from linksweep.scene.at_sections import COUNT, marks
@@ -104,7 +104,7 @@ def strength(
     Raises
     ------
     ValueError
-        If a link is no beam, none is, or a number is out of bounds.
+        If a link is no beam, none is, a number is out of bounds, or branch="both".
     ImportError
         If a material has a slope and rainflow, which counts cycles, is not installed.
 
@@ -124,8 +124,11 @@ def strength(
     """
     require_scene(scene)
     roles = beams_of(scene, links)
+    require_one_branch(scene)
     materials = materials_of(roles, material)
     factor = checked_number("stress_concentration", stress_concentration, CONCENTRATION)
+    pair = isinstance(effective_length, tuple | list) and len(effective_length) == len(PLANES)
+    refuse([] if pair else [f"effective_length = {quote(effective_length)}: must be two, in and across the plane"])
     lengths = [checked_number(f"effective_length[{k}]", one, FACTOR) for k, one in enumerate(effective_length, 1)]
     scene = in_memory(scene)
     parts = [_Link(scene, role, materials[role], factor).results(lengths) for role in roles]
@@ -222,8 +225,9 @@ class _Link:
         soderberg = fatigue_safety(mean, amplitude, steel.endurance, steel.yield_strength)
         fibre = xr.DataArray(np.arange(len(FIBRES)), dims="fibre")
         places = mean, amplitude, ds["share"], ds["factor"], fibre
-        danger, mean, amplitude, share, factor, fibre = _at_largest(1.0 / goodman, *places)
-        (other,) = _at_largest(1.0 / soderberg)
+        with np.errstate(divide="ignore"):
+            danger, mean, amplitude, share, factor, fibre = _at_largest(1.0 / goodman, *places)
+            (other,) = _at_largest(1.0 / soderberg)
         results = {"fatigue_section": share, "stress_mean": mean, "stress_amplitude": amplitude}
         if steel.slope is not None:
             ends = {"largest": mean + amplitude, "least": mean - amplitude}
@@ -271,6 +275,7 @@ def beams_of(scene: Scene, links: Any) -> list[str]:
     require(scene, "bodies")
     machine, kind = scene.mechanism, type(scene.mechanism).__name__
     roles = list(machine.beams) if links is None else requested("links", links)
+    refuse([] if roles or links is None else [f"links = {quote(links)}: names no link; leave it out for all"])
     refuse([problem for role in roles for problem in name_problems("links", role, machine.roles)])
     reasons = {role: machine.beam_problem(role) for role in (roles or machine.roles)}
     refuse([f"links: {role} of this {kind} is no beam: {reason}" for role, reason in reasons.items() if reason])

@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pint
@@ -120,6 +121,8 @@ def test_designs_are_independent_and_sections_may_lack_moments():
         ({"material": "S235"}, "material = 'S235': must be a Material"),
         ({"material": {"crank": STEEL}}, "material: none for rocker"),
         ({"stress_concentration": 0.5}, "stress_concentration = 0.5: must be at least 1"),
+        ({"effective_length": 1.0}, "effective_length = 1.0: must be two, in and across the plane"),
+        ({"links": []}, r"links = \[\]: names no link; leave it out for all"),
     ],
 )
 def test_bad_requests_are_refused_in_a_sentence(change, sentence):
@@ -183,6 +186,32 @@ def test_a_bar_that_only_its_own_inertia_loads_reaches_no_other_safety():
     light = replace(scene, mechanism=replace(scene.mechanism, coupler=ls.Bar(0.8, 1e-3, 1e-3, 0.0)))
     ds = ls.size_links(light, STEEL, safety=1e3, links="crank")
     assert int(ds.status.sel(link="crank")) == 1 and np.isnan(ds.thickness).all()
+
+
+def test_each_of_many_designs_is_sized_as_one():
+    press = replace(ls.example("press"), omega2=xr.DataArray([30.0, 100.0], dims="speed"))
+    safeties = xr.DataArray([2.0, 1.5], dims="required")
+    many = ls.size_links(press, STEEL, safety=safeties, stress_concentration=2.5)
+    one = ls.size_links(ls.scene_at(press, speed=1), STEEL, safety=1.5, stress_concentration=2.5)
+    assert (many.status == 0).all()
+    np.testing.assert_allclose(many.thickness.sel(speed=1, required=1), one.thickness, rtol=1e-6)
+
+
+def test_an_unbounded_cycle_of_stress_has_no_safety():
+    """A crank longer than all others moves over part of a turn, between toggles at which forces are unbounded."""
+    crank, coupler, rocker = (ls.Bar(length, 0.02, 0.02, 7850.0) for length in (0.2, 0.12, 0.18))
+    scene = ls.Scene(ls.FourBar(crank, coupler, rocker, ground=0.15), omega2=10.0, gravity=(0.0, -9.81))
+    ds = ls.strength(scene, STEEL)
+    assert np.isinf(ds.stress).all()
+    for safety in (ds.yield_safety, ds.goodman_safety, ds.soderberg_safety):
+        assert (safety == 0.0).all()
+
+
+@pytest.mark.parametrize("size", [ls.strength, partial(ls.size_links, safety=2.0)])
+def test_both_branches_are_refused(size):
+    press = ls.example("press")
+    with pytest.raises(ValueError, match=r'branch = "both": must be one of open, crossed; take one with ls.scene_at'):
+        size(replace(press, mechanism=replace(press.mechanism, branch="both")), STEEL)
 
 
 def test_the_force_of_a_turning_bar_turns_with_it():
