@@ -19,8 +19,16 @@ ONE = 2**128
 DEGREE = 5939047689249815265887113184232615463
 """One, and a degree in radians, as integers with 128 bits after the binary point."""
 
+OFF_ROUND = 0.381966
+"""First of even samples, in steps (1 − 0.618…, the golden section): off round angles, where machines have toggles."""
 COS_SIGNS, SIN_SIGNS = np.array([1.0, -1.0, -1.0, 1.0]), np.array([1.0, 1.0, -1.0, -1.0])
 """Signs of cosine and sine, quadrant by quadrant."""
+
+
+def signed_distance(angle: Any, place: Any, period: float = 360.0) -> Any:
+    """Return how far angles lie from a place, the shorter way round [degree]."""
+    distance = angle - place
+    return distance - period * np.round(distance / period)
 
 
 def cos_sin(degrees):

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import xarray as xr
 
+from linksweep.base.degrees import OFF_ROUND, signed_distance
 from linksweep.base.validate import Number
 from linksweep.engine.roots import roots
 from linksweep.engine.trace.plan import plan
@@ -25,8 +26,8 @@ from linksweep.scene.pairs import Array, by_row, different_designs, in_period, q
 if TYPE_CHECKING:
     from linksweep.scene.scene import Scene
 
-PER_TURN, OFF_ROUND = 1440, 0.381966
-"""Even samples of a turn; the first one, in steps: off round angles, where machines turn round."""
+PER_TURN = 1440
+"""Even samples of a turn."""
 THIRDS = 40
 """Steps towards an extreme of a rate, each of which leaves two thirds of two steps between samples."""
 HALVINGS = 60
@@ -96,8 +97,7 @@ class Motion(NamedTuple):
         return np.broadcast_to(aligned(number, tuple(self.sizes)), tuple(self.sizes.values())).ravel()
 
     def _away(self, position: Array, target: Array) -> Array:
-        away = position - target
-        return np.mod(away + 180.0, 360.0) - 180.0 if self.turns else away
+        return signed_distance(position, target) if self.turns else position - target
 
 
 def _motion_of(alone: Scene, stroke: Stroke) -> Motion:

@@ -350,11 +350,11 @@ def test_a_function_has_no_gradient():
 
 
 @pytest.mark.parametrize(
-    ("part", "given"), [({"between": (10, 60)}, r"between = \(10, 60\)"), ({"theta2": 8}, "theta2 = 8")]
+    ("part", "words"), [({"between": (10, 60)}, r"between = \(10, 60\)"), ({"theta2": 8}, "theta2 = 8")]
 )
-def test_samples_and_parts_of_the_cycle_have_no_gradients(part, given):
+def test_samples_and_parts_of_the_cycle_have_no_gradients(part, words):
     """A gradient of the whole cycle's peak points elsewhere than the values of a search."""
     of = ls.objective(PRESS, MAY_BE, minimize="F32_peak", **part)
     for search in (lambda: of.gradient(of.x0), lambda: of.plain_value(of.x0), of.optimum):
-        with pytest.raises(ValueError, match=f"{given}: gradients are those.*leave it out"):
+        with pytest.raises(ValueError, match=f"{words}: gradients are those.*leave it out"):
             search()

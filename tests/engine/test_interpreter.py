@@ -28,17 +28,17 @@ def drawn_plan(draw: np.random.Generator, operations: int = 60) -> Plan:
     nodes = [graph.input(f"x{k}", DIMS[k % len(DIMS)]) for k in range(10)]
     plain = [graph.input(f"plain{k}", DIMS[k]) for k in range(4)]
     nodes += [graph.constant(float(draw.choice(SPECIAL))) for _ in range(3)]
-    conditions = [graph.operation("<", nodes[0], nodes[1])]
+    conditions = [graph.apply("<", nodes[0], nodes[1])]
     for k in range(operations):
         name = OPERATORS[k % len(OPERATORS)]
         among = plain if name == "product_low" else nodes  # numpy's way to it overflows before its result does
         operands = [among[i] for i in draw.integers(0, len(among), OPERANDS.get(name, 2))]
         if name == "<":
-            conditions.append(graph.operation(name, *operands))
+            conditions.append(graph.apply(name, *operands))
         elif name == "where":
-            nodes.append(graph.operation(name, conditions[draw.integers(len(conditions))], *operands[1:]))
+            nodes.append(graph.apply(name, conditions[draw.integers(len(conditions))], *operands[1:]))
         else:
-            nodes.append(graph.operation(name, *operands))
+            nodes.append(graph.apply(name, *operands))
     results = [node for node in (*nodes, *conditions) if node.operands]
     chosen = draw.permutation(len(results))[:12]
     return Plan("theta2", {f"y{i}": results[i] for i in chosen} | {"first": nodes[0], "angle": nodes[1]}, ())

@@ -27,6 +27,7 @@ from linksweep.analysis.design.travel import rate_of
 from linksweep.analysis.drive.flywheel import flywheel, flywheel_slopes
 from linksweep.analysis.pins.bearing import TEXTS
 from linksweep.analysis.pins.life_derivatives import life, life_derivatives
+from linksweep.base.degrees import signed_distance
 from linksweep.base.validate import name_problems
 from linksweep.engine.run import Field
 from linksweep.results.compute import quantity_problems
@@ -236,7 +237,7 @@ def _travel(scene: Scene, name: str, to: tuple[str, ...]) -> Derived:
     (q_first, ahead), (q_last, behind) = (_turning_point(alone, position, at, own) for at in ends)
     way = q_first - q_last
     # an angle may pass 180 degrees on its way
-    sense = xr.where(abs(np.mod(way - value + 180.0, 360.0) - 180.0) < 1e-6, 1.0, -1.0)
+    sense = xr.where(abs(signed_distance(way, value)) < 1e-6, 1.0, -1.0)
     sense = xr.DataArray(sense) if scene.table.quantity[position].units == "degree" else np.sign(way)
     slopes = {p: xr.DataArray(sense * (ahead[p] - behind[p])) if p in own else 0.0 * value for p in to}
     return Derived(value, slopes, xr.where(np.isfinite(value), OK, NONE))

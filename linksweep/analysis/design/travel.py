@@ -15,27 +15,25 @@ length together. Its travel is then 0, both ends are its least value, and all el
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from linksweep.engine.roots import roots
 from linksweep.engine.run import Field
+from linksweep.results.peak_search.between import EVERYWHERE
 from linksweep.results.peak_search.groups import (
     Group,
     assembled_groups,
-    crossing,
     empty_over_all,
     with_assembly_signals,
 )
 from linksweep.scene.scene import Scene
 
-PER_TURN, STEPS = 1440, 12
+PER_TURN = 1440
 TURN = 360.0
 STILL = 1e-12
 """Travel of a position that stands still, relative to its size: rounding, with a margin."""
-EVERYWHERE = (0.0,)
-"""The assembly of designs that have a position at every angle."""
 RATES = {"theta": "omega", "x_": "v_", "length_": "rate_"}
 """Beginning of the name of a position's rate, by that of the position; others are coordinates of pins."""
 Array = np.ndarray
@@ -82,7 +80,7 @@ def travel(scene: Scene, name: str, dwell: float) -> Travel:
     empty = empty_over_all(scene, with_assembly_signals(scene, (*names, "assembly")))
     results = Travel(*(Field(empty.dims, empty.values.copy()) for _ in Travel._fields))
     turns = scene.table.quantity[name].units == "degree"
-    for _, group in assembled_groups(scene, names, EVERYWHERE):
+    for _, group in assembled_groups(scene, names, (EVERYWHERE,)):
         at = tuple(group.places[dim] for dim in empty.dims)
         with np.errstate(invalid="ignore", divide="ignore"):  # a link that turns fully, or stands still
             samples = _samples(group, names, turns)
@@ -100,7 +98,7 @@ def _samples(group: Group, names: tuple[str, ...], turns: bool) -> Samples:
     position, rate = group.values(names, rows, np.tile(angles, designs)).reshape(2, designs, count)
 
     def at(name: str) -> Callable[[Array, Array], Array]:
-        return lambda rows, angles: group.of(name, rows)(np.nan_to_num(angles))
+        return lambda rows, angles: group.values((name,), rows, np.nan_to_num(angles))[0]
 
     position_at, rate_at = map(at, names)
     if not turns:
@@ -136,8 +134,8 @@ def _end(samples: Samples, sign: float) -> tuple[Array, Array]:
     rows, count = np.arange(len(samples.position)), samples.position.shape[1]
     k = np.argmax(np.where(np.isnan(samples.position), -np.inf, sign * samples.position), axis=1)
     first = np.where((samples.rate[rows, k - 1] < 0.0) != (samples.rate[rows, k] < 0.0), k - 1, k)
-    start, end = ((j * samples.step, samples.rate[rows, j % count]) for j in (first, first + 1))
-    at = crossing(partial(samples.rate_at, rows), start, end, STEPS)
+    ends = np.stack([first, first + 1])
+    at = roots(samples.rate_at, ends * samples.step, samples.rate[rows, ends % count])
     at = np.where(np.isfinite(at), at, k * samples.step)
     return samples.position_at(rows, at), at
 
@@ -150,7 +148,8 @@ def _dwell(samples: Samples, at: Array, level: Array, sign: float) -> Array:
         k = np.round(at / samples.step).astype(int)[:, None] + way * np.arange(count)
         within = sign * (samples.position[rows[:, None], k % count] - level[:, None]) >= 0.0
         step = np.argmin(within, axis=1)
-        ends = [k[rows, np.maximum(step + side, 0)] * samples.step for side in (-1, 0)]
-        inside, outside = ((end, samples.position_at(rows, end) - level) for end in ends)
-        angle += way * (crossing(lambda x: samples.position_at(rows, x) - level, inside, outside, STEPS) - at)
+        ends = np.stack([k[rows, np.maximum(step + side, 0)] * samples.step for side in (-1, 0)])
+        beyond = np.stack([samples.position_at(rows, end) - level for end in ends])
+        reached = roots(lambda row, x: samples.position_at(row, x) - level[row], ends, beyond)
+        angle += way * (reached - at)
     return angle

@@ -1,4 +1,1 @@
-"""Interpret plans: one function of machine code, kept on disk, runs any plan at once, without its own kernel.
-
-Imported by `engine.run` alone.
-"""
+"""Interpret plans: one function of machine code, kept on disk, runs any plan at once, without its own kernel."""

@@ -178,14 +178,18 @@ class Instructions:
         place = self.builder.bitcast(self.builder.gep(start, [at]), self.ir.IntType(8).as_pointer())
         number = self.ir.IntType(32)
         kind = self.ir.FunctionType(self.ir.VoidType(), [place.type, number, number, number])
-        name, to_read, often, data = "llvm.prefetch.p0i8", number(0), number(3), number(1)
-        function = self.builder.module.globals.get(name) or self.ir.Function(self.builder.module, kind, name)
-        self.builder.call(function, [place, to_read, often, data])
+        to_read, often, data = number(0), number(3), number(1)
+        self.builder.call(self._declared("llvm.prefetch.p0i8", kind), [place, to_read, often, data])
 
     def stream(self, value: Any, start: Any, at: Any) -> None:
         """Store a vector past the caches, which would first read what it replaces; it begins with a line of them."""
         stored = self.builder.store(self.wide(self.as_number(value)), self._place(start, at), align=64)
         stored.set_metadata("nontemporal", self.builder.module.add_metadata([self.ir.IntType(32)(1)]))
+
+    def anywhere(self, conditions: Any) -> Any:
+        """Return whether any of a vector of conditions holds."""
+        bits = self.builder.bitcast(conditions, self.ir.IntType(self.width))
+        return self.builder.icmp_unsigned("!=", bits, bits.type(0))
 
     def as_number(self, value: Any) -> Any:
         """Return 1 and 0 for a condition; of numbers themselves."""
@@ -200,13 +204,13 @@ class Instructions:
     def _call(self, name: str, *x: Any) -> Any:
         """Call LLVM's own function of this name."""
         suffix = "f64" if x[0].type == self.double else f"v{self.width}f64"
-        return self._called(f"llvm.{name}.{suffix}", *x)
-
-    def _called(self, name: str, *x: Any) -> Any:
-        module = self.builder.module
         kind = self.ir.FunctionType(x[0].type, [one.type for one in x])
-        known = module.globals.get(name)
-        return self.builder.call(known or self.ir.Function(module, kind, name), x)
+        return self.builder.call(self._declared(f"llvm.{name}.{suffix}", kind), x)
+
+    def _declared(self, name: str, kind: Any) -> Any:
+        """Return a function of LLVM's own, declared once in a module."""
+        module = self.builder.module
+        return module.globals.get(name) or self.ir.Function(module, kind, name)
 
     def _sum_low(self, plus: Callable[..., Any], minus: Callable[..., Any], x: Any, y: Any, high: Any = None) -> Any:
         """Write Knuth's way to what a rounded sum or difference misses (`base.low_words`); that itself may be known."""

@@ -63,15 +63,11 @@ class Extreme(Running):
         far = builder.select(builder.fcmp_ordered(self.exceeds, value, other), other, value)
         # or NaN, which may hide the other
         reached = builder.fcmp_unordered(f"{self.exceeds}=", self.write.load(self.memory, self.places[0]), far)
-        with builder.if_then(self._any(reached), likely=False):
+        with builder.if_then(self.write.anywhere(reached), likely=False):
             self._compare(value, number.llvm)
             if other_number is not None:
                 same = builder.icmp_signed("==", number.llvm, other_number.llvm)
                 self._compare(builder.select(same, value, other), other_number.llvm)
-
-    def _any(self, conditions: Any) -> Any:
-        bits = self.write.ir.IntType(self.write.width)
-        return self.builder.icmp_unsigned("!=", self.builder.bitcast(conditions, bits), bits(0))
 
     def _compare(self, value: Any, number: Any) -> None:
         """Keep a sample in the lanes in which it exceeds the extreme so far, or equals it and comes before it."""

@@ -16,7 +16,7 @@ import numpy as np
 from linksweep.engine.kernel.running import EXTREMES
 from linksweep.engine.kernel.vectors import LANES
 from linksweep.engine.kernel.writer import DEEPEST, Reduction, Writer
-from linksweep.engine.trace.graph import Node, operands
+from linksweep.engine.trace.graph import Node, depth_first, operands
 from linksweep.engine.trace.parity import parities
 from linksweep.engine.trace.plan import Plan
 
@@ -107,7 +107,7 @@ class SideBySideWriter(Writer):
         self._line(2, f"for j in each(0, {'samples // 2 + 1' if pairs else 'samples'}):")
         if pairs:
             self._line(3, "back = (samples - j) % samples")
-        for node in _depth_first(own.values(), {*own.values(), *operands(work), *work}):
+        for node in depth_first(own.values(), {*own.values(), *operands(work), *work}):
             if self.per_sample(node):
                 self._define(3, node, self._expression(node) if node in work else self._sample(node))
                 if pairs and self.parity[node] != 1:
@@ -127,16 +127,3 @@ class SideBySideWriter(Writer):
         else:
             self._define(3, node, self._expression(node) if computed else self._sample(node, "back"))
         self.mirrored = False
-
-
-def _depth_first(last: Iterable[Node], nodes: set[Node]) -> list[Node]:
-    """Return nodes in an order in which few values wait for their use: each operand soon before what takes it."""
-    order: dict[Node, None] = {}
-    waiting = list(last)[::-1]
-    while waiting:
-        missing = [x for x in waiting[-1].operands if x in nodes and x not in order]
-        if missing:
-            waiting.extend(reversed(missing))
-        else:
-            order[waiting.pop()] = None
-    return list(order)

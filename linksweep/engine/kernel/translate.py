@@ -74,7 +74,7 @@ def _texts(function: Any) -> list[str]:
                 texts[f"{one.__module__}.{name}"] = value.text
             elif isinstance(value, FunctionType) and value is not call and key not in texts:
                 waiting.append(value)
-            elif isinstance(value, int | float):
+            elif isinstance(value, int | float | tuple):
                 texts[f"{one.__module__}.{name}"] = repr(value)
     return [f"{name}: {text}" for name, text in sorted(texts.items())]
 

@@ -52,12 +52,7 @@ def choose(condition, value, other):
     return np.where(condition, value, other)
 
 
-def _write_anywhere(vectors, condition):
-    bits = vectors.builder.bitcast(condition, vectors.ir.IntType(LANES))
-    return vectors.builder.icmp_unsigned("!=", bits, bits.type(0))
-
-
-@written_by(_write_anywhere)
+@written_by(lambda vectors, condition: vectors.anywhere(condition))
 def anywhere(condition):
     """Return whether a condition holds in any lane."""
     return bool(np.any(condition))

@@ -58,7 +58,7 @@ ALONG, END = "piece_tangent", "piece_end"
 the angle from the piece's start or end, and which of the two."""
 ANYWHERE, OF_HALF = "tangent_anywhere", "half_anywhere"
 """Inputs that place a sample anywhere on a turn instead: tangent and half turn, as above."""
-NEAR_WIDTH, FAR_WIDTH = "near_toggle_near", "near_toggle_far"
+WIDTHS = NEAR_WIDTH, FAR_WIDTH = "near_toggle_near", "near_toggle_far"
 """Widths of the near-toggles in those middles."""
 SOON = 2 * LANES
 """Designs from the first lane's to one whose parameters are fetched into the caches: that of the lanes after the next.
@@ -112,8 +112,7 @@ class Evaluators(Patience):
         self.at_samples = [node for node in work if self._turns(node)]
         used = {x for x in operands(self.at_samples) if not self._turns(x)}
         used |= {x for x in operands(node for node in self.of_designs if PIECE in node.dims) if PIECE not in x.dims}
-        widths = [plan.outputs[NEAR_WIDTH], plan.outputs[FAR_WIDTH]]
-        self.constants = [*widths, *in_order(used - {*plan.constants})]
+        self.constants = [*(plan.outputs[width] for width in WIDTHS), *in_order(used - {*plan.constants})]
         self.ahead = self._needed([node for node in self.at_samples if node.operator in SLOW and self.parity[node]])
         """Operations at a place that lead to divisions and roots, which the place shares with its mirror."""
         self.left = [node for node in self.at_samples if node not in set(self.ahead)]

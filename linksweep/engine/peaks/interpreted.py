@@ -48,8 +48,9 @@ class Interpreted:
     def evaluate(self, constants, table, x: int, value: int, far: int, signal: int, first: int, last: int) -> None:
         lanes = table[:, first:last]
         here = self._at(constants, lanes[x], lanes[far])
-        every = [np.ravel(here[node]) for node in self.of.signals]
-        lanes[value] = np.choose(lanes[signal].astype(int) if signal >= 0 else np.arange(last), every)
+        every = np.stack([np.broadcast_to(np.ravel(here[node]), last - first) for node in self.of.signals])
+        number = lanes[signal].astype(int) if signal >= 0 else np.arange(last)
+        lanes[value] = every[number, np.arange(last - first)]  # np.choose takes 64 signals at most
 
     def _at(self, constants: np.ndarray, tangent: np.ndarray, far: Any) -> Values:
         """Return the values of all signals at places."""

@@ -12,13 +12,12 @@ import numpy as np
 from linksweep.engine.kernel.machine_code import INTEGER, INTEGERS, ROW, TABLE
 from linksweep.engine.kernel.translate import translated
 from linksweep.engine.peaks import turns
-from linksweep.engine.peaks.evaluators import FAR_WIDTH, NEAR_WIDTH, Evaluators, Functions
+from linksweep.engine.peaks.evaluators import WIDTHS, Evaluators, Functions
 from linksweep.engine.peaks.samples import EVENLY, HALF, grades
 from linksweep.engine.run import Fields, Sizes, flat, ordered
 from linksweep.engine.threads import over_threads
 from linksweep.engine.trace.plan import Plan
 
-WIDTHS = (NEAR_WIDTH, FAR_WIDTH)
 INTERPRETED_DESIGNS, LOADING = 40, 1 / 40
 """Designs interpreted before a plan's kernel is compiled, and the share of them before it is loaded where it is kept.
 """

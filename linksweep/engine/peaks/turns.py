@@ -16,7 +16,7 @@ from linksweep.engine.kernel.instructions import call
 from linksweep.engine.peaks.brackets import BEYOND, EVALUATIONS, NOISE, PEAK, PEAK_FAR, PEAK_X, RISE, larger, refine
 from linksweep.engine.peaks.lanewise import around, copy_lanes, lanewise
 from linksweep.engine.peaks.samples import GRADES, HALF, SAMPLES
-from linksweep.engine.peaks.summits import open_brackets, slopes_between
+from linksweep.engine.peaks.summits import might_reach, open_brackets, slopes_between
 from linksweep.engine.trace.arctangent import arctangent
 from linksweep.engine.trace.graph import Node
 
@@ -176,7 +176,7 @@ def summit_of(left, first, second, right, number):
     """
     rises = first < second
     value, beside, beyond = rises.where(second, first), rises.where(first, second), rises.where(right, left)
-    height = ((value - beside) + (value - beyond)) + value
+    height = might_reach(beside, value, beyond, 1.0)
     return (value < beyond).where(-math.inf, height), rises.where(number + 1.0, number)
 
 
@@ -188,7 +188,7 @@ def height_between(before, left, value, right):
     outer, beside = rises.where(before, right), rises.where(left, value)
     top, beyond = rises.where(value, left), rises.where(right, before)
     from_beside, from_top, slopes = rises.where(rising, falling), rises.where(falling, rising), top < beyond
-    height, secants = slopes.where(from_beside, from_top), ((top - beside) + (top - beyond)) + top
+    height, secants = slopes.where(from_beside, from_top), might_reach(beside, top, beyond, 1.0)
     for sound in (outer < beside, beside < top, top < from_top, slopes.where(-math.inf, secants) < height):
         height = sound.where(height, -math.inf)
     return height

@@ -1,4 +1,4 @@
 """Decide which operations a request needs: tracing, planning, superposition of cycles, rounding error analysis.
 
-A `plan.Plan` is what goes to the kernel; rooms above import `plan` and `superpose` alone.
+A `plan.Plan` is what goes to the kernel.
 """

@@ -20,7 +20,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Callable, Collection, Iterable
 
-from linksweep.engine.trace.graph import LOW_WORDS, Node
+from linksweep.engine.trace.graph import LOW_WORDS, Node, depth_first
 
 Conditions = frozenset[tuple[Node, bool]]
 """Conditions that hold together, each with the outcome that it must have."""
@@ -46,7 +46,7 @@ PASSED_ON: dict[str, Callable[..., tuple[Node, ...]]] = {
 
 def gradient(value: Node, to: Collection[Node]) -> dict[Node, Node]:
     """Return the derivatives of a value to those of these inputs on which it depends."""
-    operations = _operations(value)
+    operations = depth_first([value])  # adjoints are summed in this order
     active = _active(operations, frozenset(to))
     received: dict[Node, list[tuple[Mask, Node]]] = defaultdict(list)
     received[value].append((ALWAYS, value.graph.constant(1.0)))
@@ -58,19 +58,6 @@ def gradient(value: Node, to: Collection[Node]) -> dict[Node, Node]:
             if x in active:
                 received[x].append((own, passed))
     return {x: _selected(*_joined(received[x])) for x in to if x in received}
-
-
-def _operations(value: Node) -> list[Node]:
-    """Return the nodes that lead to a value, operands first, in an order that no other request changes: adjoints are
-    summed in it."""
-    known, waiting = dict[Node, None](), [value]
-    while waiting:
-        missing = [x for x in waiting[-1].operands if x not in known]
-        if missing:
-            waiting.extend(reversed(missing))
-        else:
-            known[waiting.pop()] = None
-    return [*known]
 
 
 def _active(operations: Iterable[Node], to: frozenset[Node]) -> set[Node]:

@@ -8,7 +8,7 @@ prescribes, so all return equal bits.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Container, Iterable
 from operator import attrgetter
 
 LOW_WORDS = {"sum_low": "+", "difference_low": "-", "ordered_low": "+", "product_low": "*"}
@@ -101,13 +101,9 @@ class Graph:
         """Return the value of an operation."""
         return self._make(operator, operands)
 
-    def operation(self, operator: str, *operands: Node) -> Node:
-        """Return the node of an operation."""
-        return self._make(operator, operands)
-
     def copy(self, node: Node, operands: tuple[Node, ...]) -> Node:
         """Return a copy of a node of another graph, with operands of this one."""
-        return self._make(node.operator, operands, node.value, node.dims)
+        return self._make(node.operator, operands, node.value, None if operands else node.dims)
 
     def find(self, operator: str, *operands: Node) -> Node | None:
         """Return the node of an operation on these operands, if there is one."""
@@ -146,6 +142,19 @@ def operands(nodes: Iterable[Node]) -> set[Node]:
 def in_order(nodes: Iterable[Node]) -> list[Node]:
     """Return nodes in the order in which they were traced."""
     return sorted(nodes, key=attrgetter("position"))
+
+
+def depth_first(last: Iterable[Node], among: Container[Node] | None = None) -> list[Node]:
+    """Return nodes and those on which they depend, of all or among some, each operand soon before what takes it: few
+    values wait for their use, and no other request changes the order."""
+    order, waiting = dict[Node, None](), [*last][::-1]
+    while waiting:
+        missing = [x for x in waiting[-1].operands if x not in order and (among is None or x in among)]
+        if missing:
+            waiting.extend(reversed(missing))
+        else:
+            order[waiting.pop()] = None
+    return [*order]
 
 
 def leading_to(nodes: Iterable[Node]) -> list[Node]:

@@ -108,8 +108,7 @@ def _arctangent(y: Node, x: Node) -> Node:
     (inputs, nodes, (angle,)), graph = traced_arctangent(), y.graph
     copies = dict(zip(inputs, (y, x), strict=True))
     for node in nodes:
-        operands = (copies[operand] for operand in node.operands)
-        copies[node] = graph.operation(node.operator, *operands) if node.operands else graph.copy(node, ())
+        copies[node] = graph.copy(node, tuple(copies[operand] for operand in node.operands))
     return copies[angle]
 
 

@@ -6,6 +6,7 @@ That changes no bit of a finite result. Signs are moved outward until a sum abso
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import partial
 
 from linksweep.engine.trace.graph import Graph, Key, Node
 
@@ -22,7 +23,7 @@ class Simplified(Graph):
         if operator in KNOWN and all(x.operator == "constant" for x in operands):
             return self.constant(KNOWN[operator](*(x.value for x in operands)))
         rule = RULES.get(operator)
-        return rule(self, *operands) if rule else self.operation(operator, *operands)
+        return rule(self, *operands) if rule else super().apply(operator, *operands)
 
     def _key(self, operator: str, operands: tuple[Node, ...], value: object) -> Key:
         """Return the key that equal nodes share, also those whose operands have changed places."""
@@ -39,7 +40,7 @@ class Simplified(Graph):
             return self.subtract(x, y.operands[0])
         if x.operator == "negate":
             return self.subtract(y, x.operands[0])
-        return self.operation("+", x, y)
+        return super().apply("+", x, y)
 
     def subtract(self, x: Node, y: Node) -> Node:
         if y.is_constant(0.0):
@@ -50,7 +51,7 @@ class Simplified(Graph):
             return self.add(x, y.operands[0])
         if x.operator == "negate":
             return self.negate(self.add(x.operands[0], y))
-        return self.operation("-", x, y)
+        return super().apply("-", x, y)
 
     def multiply(self, x: Node, y: Node) -> Node:
         if x.is_constant(0.0) or y.is_constant(0.0):
@@ -63,7 +64,7 @@ class Simplified(Graph):
             return self.negate(self.multiply(x.operands[0], y))
         if y.operator == "negate":
             return self.negate(self.multiply(x, y.operands[0]))
-        return self.operation("*", x, y)
+        return super().apply("*", x, y)
 
     def add_product(self, x: Node, y: Node, z: Node, minus: bool = False) -> Node:
         """Return z + x·y, or z − x·y, rounded once."""
@@ -79,29 +80,26 @@ class Simplified(Graph):
                 return self.add_product(factor.operands[0], other, z, not minus)
         if z.operator == "negate":
             return self.negate(self.add_product(x, y, z.operands[0], not minus))
-        return self.operation("fnma" if minus else "fma", x, y, z)
-
-    def subtract_product(self, x: Node, y: Node, z: Node) -> Node:
-        return self.add_product(x, y, z, minus=True)
+        return super().apply("fnma" if minus else "fma", x, y, z)
 
     def divide(self, x: Node, y: Node) -> Node:
         if x.is_constant(0.0) or y.is_constant(1.0):
             return x
         if x.operator == "negate":
             return self.negate(self.divide(x.operands[0], y))
-        return self.operation("/", x, y)
+        return super().apply("/", x, y)
 
     def negate(self, x: Node) -> Node:
         if x.operator == "constant":
             return self.constant(-x.value if x.value else 0.0)
         if x.operator == "negate":
             return x.operands[0]
-        return self.operation("negate", x)
+        return super().apply("negate", x)
 
     def choose(self, condition: Node, x: Node, y: Node) -> Node:
         if condition.operator == "constant":
             return x if condition.value else y
-        return x if x is y else self.operation("where", condition, x, y)
+        return x if x is y else super().apply("where", condition, x, y)
 
     def sum_low(self, x: Node, y: Node) -> Node:
         """Return what the rounded sum misses of x + y."""
@@ -110,16 +108,16 @@ class Simplified(Graph):
         if x.operator == "negate" == y.operator:
             return self.negate(self.sum_low(x.operands[0], y.operands[0]))
         if y.operator == "negate":
-            return self.operation("difference_low", x, y.operands[0])
+            return super().apply("difference_low", x, y.operands[0])
         if x.operator == "negate":
-            return self.operation("difference_low", y, x.operands[0])
-        return self.operation("sum_low", x, y)
+            return super().apply("difference_low", y, x.operands[0])
+        return super().apply("sum_low", x, y)
 
     def ordered_low(self, x: Node, y: Node) -> Node:
         """Return what the rounded sum misses of x + y, where |x| ≥ |y| or x = 0."""
         if x.is_constant(0.0) or y.is_constant(0.0):
             return self.constant(0.0)
-        return self.operation("ordered_low", x, y)
+        return super().apply("ordered_low", x, y)
 
     def product_low(self, x: Node, y: Node) -> Node:
         """Return what the rounded product misses of x·y."""
@@ -129,7 +127,7 @@ class Simplified(Graph):
             return self.negate(self.product_low(x.operands[0], y))
         if y.operator == "negate":
             return self.negate(self.product_low(x, y.operands[0]))
-        return self.operation("product_low", x, y)
+        return super().apply("product_low", x, y)
 
 
 RULES: Mapping[str, Callable[..., Node]] = {
@@ -138,7 +136,7 @@ RULES: Mapping[str, Callable[..., Node]] = {
     "*": Simplified.multiply,
     "/": Simplified.divide,
     "fma": Simplified.add_product,
-    "fnma": Simplified.subtract_product,
+    "fnma": partial(Simplified.add_product, minus=True),
     "negate": Simplified.negate,
     "where": Simplified.choose,
     "rounded": lambda graph, x: x,

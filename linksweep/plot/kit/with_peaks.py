@@ -12,6 +12,7 @@ from functools import lru_cache
 import numpy as np
 import xarray as xr
 
+from linksweep.base.degrees import signed_distance
 from linksweep.files.netcdf import scene_of
 from linksweep.plot.kit.signals import INDEX, WHOLE_TURN, full_turn, require_angles
 from linksweep.results.compute import angles_missing
@@ -88,7 +89,7 @@ def _raise_to_infinity(ds: xr.Dataset, worst: xr.Dataset, period: float) -> None
     for name in (str(name) for name in worst.data_vars if f"{name}_at" in worst and np.isinf(worst[name])):
         stem, sign = name.rpartition("_")[0], float(np.sign(worst[name]))
         parts = [ds[part] for part in ([stem] if stem in ds else [f"{stem}x", f"{stem}y"]) if part in ds]
-        away = np.mod(ds[INDEX].values - float(worst[f"{name}_at"]) + 0.5 * period, period) - 0.5 * period
+        away = signed_distance(ds[INDEX].values, float(worst[f"{name}_at"]), period)
         if not parts:
             continue
         size = np.nan_to_num(np.hypot(*(part.values for part in parts)) if len(parts) == 2 else sign * parts[0].values)

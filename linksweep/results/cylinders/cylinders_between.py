@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from linksweep.base.degrees import signed_distance
 from linksweep.engine.run import Field
 from linksweep.results.cylinders.cylinder_sums import combined, sources_of
 from linksweep.results.cylinders.multi_cylinder import MultiCylinder
@@ -26,12 +27,11 @@ from linksweep.results.peak_search.along_paths import (
 from linksweep.results.peak_search.arcs import arc_ends
 from linksweep.results.peak_search.between import EVERYWHERE, NEVER
 from linksweep.results.peak_search.groups import Group, assembled_groups, empty, empty_over_all, groups
-from linksweep.results.peak_search.paths import ASIDE, Paths, about_approaches, jump_angles, neighbours, turns
-from linksweep.results.peak_search.singular.poles import Candidates, concatenated, may_have_poles, pole_candidates
-from linksweep.scene.pairs import Array, Places, in_period
+from linksweep.results.peak_search.paths import ASIDE, Paths, about_approaches, distinct, jump_angles, neighbours, turns
+from linksweep.results.peak_search.singular.poles import Candidates, may_have_poles, pole_candidates
+from linksweep.scene.pairs import Array, Places, in_period, joined
 from linksweep.scene.scene import Scene
 
-HALF_TURN = 180.0
 MERGED = 0.1 * ASIDE
 """Distance within which samples of different cylinders are one sample [degree]."""
 
@@ -78,7 +78,7 @@ class Cylinders(NamedTuple):
         """Return angles with those at a jump moved to its nearer side: cylinders that jump together then all do."""
         for one, ahead in self.by_cylinder():
             for jump in jump_angles(one).T:
-                away = np.mod(angles - (jump[rows] - ahead) + HALF_TURN, 2.0 * HALF_TURN) - HALF_TURN
+                away = signed_distance(angles, jump[rows] - ahead)
                 beside = angles - away + np.copysign(MERGED, away)
                 angles = np.where(np.abs(away) < MERGED, beside, angles)
         return angles
@@ -111,19 +111,11 @@ def _turns(group: Cylinders) -> Paths:
     period = group.machine.period
     own = [(turns(one), ahead) for one, ahead in group.by_cylinder()]
     x, cuts = (
-        _merged(np.concatenate([in_period(numbers - ahead, period) for numbers, ahead in parts], axis=1))
+        distinct(np.concatenate([in_period(numbers - ahead, period) for numbers, ahead in parts], axis=1), MERGED)
         for parts in ([(p.x, ahead) for p, ahead in own], [(p.cuts[:, :-1], ahead) for p, ahead in own])
     )
     before, after = neighbours(x, period)
     return own[0][0]._replace(x=x, before=before, after=after, cuts=np.append(cuts, cuts[:, :1] + period, axis=1))
-
-
-def _merged(x: Array) -> Array:
-    """Return angles (path, angle) in order; one that differs from the last by rounding alone is made equal to it."""
-    x = np.sort(x, axis=1)
-    new = np.diff(x, axis=1, prepend=-1.0) > MERGED
-    last = np.maximum.accumulate(np.where(new, np.arange(x.shape[1]), 0), axis=1)
-    return np.take_along_axis(x, last, axis=1)
 
 
 @about_approaches.register
@@ -138,7 +130,7 @@ def _about_approaches(group: Cylinders) -> Paths:
 def _pole_candidates(group: Cylinders, signals: tuple[str, ...]) -> Candidates:
     sources = sources_of(signals, group.machine.rules)
     parts = [(pole_candidates(one, sources), ahead) for one, ahead in group.by_cylinder()]
-    return concatenated([(row, angle - ahead, step) for (row, angle, step), ahead in parts])
+    return joined([some._replace(angle=some.angle - ahead) for some, ahead in parts])
 
 
 def exact_peaks_of_sums(machine: MultiCylinder, signals: tuple[str, ...]) -> dict[str, SignalPeak]:

@@ -25,6 +25,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
+from linksweep.base.degrees import signed_distance
 from linksweep.engine.quantity import opposite_of
 from linksweep.engine.run import Field
 from linksweep.engine.trace.derivatives import derivative_of
@@ -33,7 +34,7 @@ from linksweep.results.peak_search.rises import at_arc_ends, equal_rises
 from linksweep.scene.derivatives.differentiated import ANGLE, differentiated
 from linksweep.scene.derivatives.sloped import Sloped, slopes_of, value_of
 from linksweep.scene.inputs import as_field
-from linksweep.scene.pairs import Array, in_period
+from linksweep.scene.pairs import Array
 from linksweep.scene.scene import Scene
 
 MEANINGS = ("ok", "tie", "moving_jump", "unbounded", "no_peak", "arc_end", "zero_magnitude")
@@ -168,12 +169,7 @@ def _over(pairs: Pairs, number: Any) -> Array:
 
 
 def _near(angles: Array, place: Any, period: float) -> Array:
-    return np.abs(_away(angles, place, period)) < 10.0 * BESIDE
-
-
-def _away(angles: Array, place: Any, period: float) -> Array:
-    """Return angles less a place, the nearest way round [degree]."""
-    return in_period(angles - place + 0.5 * period, period) - 0.5 * period
+    return np.abs(signed_distance(angles, place, period)) < 10.0 * BESIDE
 
 
 def _side(pairs: Pairs, name: str, angles: Array, peak: Array) -> Array:
@@ -207,7 +203,7 @@ def _corners(
     level = np.nan_to_num(level - EQUAL * np.abs(level), nan=np.inf)
     signal = name if largest else opposite_of(name)
     row, angle, top = equal_rises(pairs.scene.plain, signal, pairs.designs, level)
-    other = np.abs(_away(angle, angles[row], pairs.scene.period)) > APART
+    other = np.abs(signed_distance(angle, angles[row], pairs.scene.period)) > APART
     row, angle, top = row[other], angle[other], top[other]
     corners = np.zeros(slopes.shape, dtype=bool)
     if len(row):

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from linksweep.base.degrees import signed_distance
 from linksweep.engine.peaks import brackets
 from linksweep.engine.peaks.paths import open_brackets, refine
 from linksweep.engine.peaks.summits import might_reach
@@ -18,8 +19,8 @@ from linksweep.engine.run import Field
 from linksweep.results.peak_search.groups import Group
 from linksweep.results.peak_search.paths import QUARTER, Part, Paths
 from linksweep.results.peak_search.singular.poles import poles
-from linksweep.results.peak_search.singular.rounding_errors import CLEAR, Singular, signed_distance
-from linksweep.scene.pairs import Array, flat_index, in_period
+from linksweep.results.peak_search.singular.rounding_errors import CLEAR, Singular
+from linksweep.scene.pairs import Array, flat_index, in_period, some_of
 
 NODES, SPANS = 10, (25.0, 5.0, 1.0, 0.2, 0.04)
 """Samples before a toggle from which a signal is extrapolated, and the distances from it of the farthest ones, in steps
@@ -54,8 +55,18 @@ class SignalPeak(NamedTuple):
     samples: Field
 
 
-Best = tuple[Array, Array, Array, Array]
-"""The highest value of each signal on each path: arrays (path, signal) of the four numbers of a `SignalPeak`."""
+class Best(NamedTuple):
+    """The four numbers of the highest values of signals, as arrays over designs, paths or arcs."""
+
+    value: Array
+    angle: Array
+    bound: Array
+    samples: Array
+
+    def raise_to(self, higher: Array, value: Array | float, angle: Array, bound: Array | float) -> None:
+        """Replace values by higher ones."""
+        for own, numbers in zip(self, (value, angle, bound), strict=False):
+            np.copyto(own, numbers, where=higher)
 
 
 def nothing(field: Field) -> SignalPeak:
@@ -129,12 +140,12 @@ def raise_to_poles(group: Any, peaks: dict[str, SignalPeak], part: Part | None =
 def raise_to_limits(group: Any, peaks: dict[str, SignalPeak], places: Singular, part: Part | None = None) -> None:
     """Raise finite peaks beside singular places to the limits of their signals there, or their bounds, where these are
     not known as well: samples closer by may consist of rounding errors. `part`: as of `raise_to_poles`."""
-    places = Singular(*(numbers[_inside(places.angle, part, group.scene.period)] for numbers in places))
+    places = some_of(places, _inside(places.angle, part, group.scene.period))
     signals, side = tuple(peaks), np.repeat([-1.0, 1.0], len(places.row))
     row, angle = np.tile(places.row, 2), np.tile(places.angle, 2)
     known = zip(*(numbers_of(peak, group)[:2] for peak in peaks.values()), strict=True)
     value, at = (np.stack(numbers)[:, row] for numbers in known)
-    needs = np.isfinite(value) & (np.abs(signed_distance(angle, at, group.scene.period)) < 2.0 * CLEAR)
+    needs = np.isfinite(value) & (np.abs(signed_distance(at, angle, group.scene.period)) < 2.0 * CLEAR)
 
     def values_at(which: Array, ends: Array, x: Array) -> Array:
         angles, rows = angle[ends, None] + side[ends, None] * x, np.repeat(row[ends], x.shape[1])
@@ -202,7 +213,7 @@ def _search(group: Group, signals: tuple[str, ...], paths: Paths, current: Array
         refine(paths.x.size * len(signals), lanes, count, best, values_at)
     value, x, bound = (best[row].reshape(-1, len(signals)) for row in (brackets.PEAK, brackets.PEAK_X, brackets.BEYOND))
     angle = angle_in_period(paths.angles(np.arange(count_of_paths)[:, None], x), group.scene.period)
-    return value, angle, bound, np.broadcast_to(samples[:, None], value.shape)
+    return Best(value, angle, bound, np.full(value.shape, samples[:, None], dtype=float))
 
 
 class Rises(NamedTuple):
@@ -237,7 +248,8 @@ def _opened(group: Group, signals: tuple[str, ...], paths: Paths) -> tuple[Array
     every = np.repeat(np.arange(count_of_paths), per_path)
     values = group.values(signals, paths.row[every], paths.angles(every, paths.x.ravel()))
     rows = values.reshape(len(signals), count_of_paths, per_path).swapaxes(0, 1)
-    lanes = np.zeros((brackets.BRACKET_ROWS, brackets.in_blocks(rows.size // 2 + 1)))
+    most = count_of_paths * len(signals) * (per_path // 2 + 1)  # no two neighbours are summits
+    lanes = np.zeros((brackets.BRACKET_ROWS, brackets.in_blocks(most)))
     best = np.empty((brackets.BEST_ROWS, count_of_paths * len(signals)))
     with np.errstate(all="ignore"):
         count = open_brackets(rows, paths.x, paths.before, paths.after, paths.ends == "meet", lanes, best)
@@ -270,14 +282,12 @@ def _promising(lanes: Array, peak: Array, paths: Paths, signals: int) -> Array:
 
 def _with_limits(group: Group, signals: tuple[str, ...], paths: Paths, best: Best) -> Best:
     """Return the highest values on arcs, raised to the limits at their ends: inf where a signal is unbounded."""
-    value, angle, bound, samples = best
     for end, side in enumerate((-1.0, 1.0)):
-        limit, error, more = (numbers.T for numbers in _limits(group, signals, paths, end, value.T))
-        raised = limit > value
-        edge = paths.middle + side * paths.half
-        value, bound, samples = np.where(raised, limit, value), np.where(raised, error, bound), samples + more
-        angle = np.where(raised, angle_in_period(edge, group.scene.period)[:, None], angle)
-    return value, angle, bound, samples
+        limit, error, samples = (numbers.T for numbers in _limits(group, signals, paths, end, best.value.T))
+        edge = angle_in_period(paths.middle + side * paths.half, group.scene.period)[:, None]
+        best.raise_to(limit > best.value, limit, edge, error)
+        best.samples[...] += samples
+    return best
 
 
 def _limits(group: Group, signals: tuple[str, ...], paths: Paths, end: int, peak: Array) -> tuple[Array, Array, Array]:

@@ -13,12 +13,13 @@ from typing import NamedTuple
 import numpy as np
 
 from linksweep.engine.kernel.writer import Reduction
-from linksweep.engine.peaks.evaluators import FAR_WIDTH, NEAR_WIDTH
+from linksweep.engine.peaks.evaluators import WIDTHS
+from linksweep.engine.roots import roots
 from linksweep.engine.run import Field, reduce_rows
 from linksweep.engine.trace.plan import plan
 from linksweep.results.compute import compute
 from linksweep.results.peak_search.between import positions_at
-from linksweep.results.peak_search.groups import Group, crossing
+from linksweep.results.peak_search.groups import Group
 from linksweep.scene.dimensions import aligned
 from linksweep.scene.pairs import Array, joined
 from linksweep.scene.scene import Scene
@@ -35,8 +36,6 @@ REACH = 30.0
 """Distance from an approach to the outermost samples about it, far enough to reach the even ones [degree]."""
 SAMPLES = 56
 """Samples about each approach, dense within its width."""
-STEPS = 12
-"""Steps of the false position to an approach: the slope is nearly straight between two samples."""
 
 
 class Approaches(NamedTuple):
@@ -82,8 +81,8 @@ def _narrow(group: Group, angles: Array, names: tuple[str, str], both: Array, en
     passing = (slopes < 0.0) & (rising >= 0.0) & (narrower < WIDE + 2.0 * np.radians(steps))
     passing[:, -1] &= ends_meet
     row, k = np.nonzero(passing)
-    ends = (angles[row, k], slopes[row, k]), (angles[row, k] + steps[row, k], rising[row, k])
-    angle = crossing(group.of(slope, row), *ends, STEPS)
+    ends = np.stack([angles[row, k], angles[row, k] + steps[row, k]])
+    angle = roots(group.of(slope, row), ends, np.stack([slopes[row, k], rising[row, k]]))
     (radians,) = group.values((width,), row, angle)
     narrow = radians < WIDE
     return Approaches(row[narrow], angle[narrow], np.maximum(np.degrees(radians[narrow]), NARROWEST))
@@ -100,7 +99,7 @@ def with_narrow_approaches(scene: Scene) -> Array:
     request = plan(scene.table, widths, scene.inputs.forms)
     least = {width: Reduction("least_sample", width) for width in widths}
     reduced = reduce_rows(request, tuple(least.values()), scene.inputs.fields, grid, sizes)
-    near_toggles = compute(scene, scene.grid(1), (NEAR_WIDTH, FAR_WIDTH))
+    near_toggles = compute(scene, scene.grid(1), WIDTHS)
     # at a sample δ away from an approach the width is √(w² + δ²), which is at most w + δ
     seen = [_below(reduced[least[width]][0], WIDE + np.radians(STEP)) for width in widths]
     hidden = [_below(field, NARROW_NEAR_TOGGLE) for field in near_toggles.values()]

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from linksweep.base.degrees import signed_distance
 from linksweep.results.peak_search.approaches import approaches
 from linksweep.results.peak_search.between import EVERYWHERE
 from linksweep.results.peak_search.groups import Group
@@ -181,9 +182,8 @@ def _even(group: Group) -> Array:
 
 def _on_arc(angles: Array, middle: Array, half: Array, period: float) -> Array:
     """Return x of angles on arcs; NaN for angles beyond an arc, or within NEAREST of its end."""
-    away = np.mod(angles - middle[:, None] + 0.5 * period, period) - 0.5 * period
     with np.errstate(invalid="ignore", divide="ignore"):  # an angle beyond the arc, or an arc of no length
-        x = np.arcsin(away / half[:, None])
+        x = np.arcsin(signed_distance(angles, middle[:, None], period) / half[:, None])
     return np.where(np.abs(x) < QUARTER - NEAREST, x, np.nan)
 
 
@@ -194,10 +194,10 @@ def steps_at_ends(toggles: Array, middle: Array, half: Array, period: float) -> 
     The step is 0 at an end that is no toggle: there a signal has a value, and needs no extrapolation.
     """
     own = np.stack([middle - half, middle + half], axis=1)
-    away = np.abs(np.mod(own[:, :, None] - toggles[:, None, :] + 0.5 * period, period) - 0.5 * period)
-    away = np.sort(np.nan_to_num(away, nan=0.5 * period), axis=-1)  # the least is the end itself
-    steps = np.clip(0.01 * np.sqrt(2.0 * away[:, :, 1] / np.maximum(half[:, None], 1e-300)), 1e-6, 0.004)
-    return np.where(away[:, :, 0] < ASIDE, steps, 0.0)
+    distances = np.abs(signed_distance(own[:, :, None], toggles[:, None, :], period))
+    distances = np.sort(np.nan_to_num(distances, nan=0.5 * period), axis=-1)  # the least is the end itself
+    steps = np.clip(0.01 * np.sqrt(2.0 * distances[:, :, 1] / np.maximum(half[:, None], 1e-300)), 1e-6, 0.004)
+    return np.where(distances[:, :, 0] < ASIDE, steps, 0.0)
 
 
 # -------------------------------------------------------------------------------------------- integrals of a part

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from linksweep.base.degrees import signed_distance
 from linksweep.engine.quantity import Table
 from linksweep.engine.run import Fields, Grid, evaluate
 from linksweep.engine.trace.plan import InputForms, Plan, plan
@@ -17,6 +18,16 @@ EVERYWHERE, PARTLY, NEVER = 0.0, 1.0, 2.0
 """Assembly of a design: at every crank angle, at some, or at none."""
 ONE = "_one"
 """Dim of designs, or of pieces of their turns, each with its own value of every parameter."""
+
+
+def half_turn_of(angle: Array) -> Array:
+    """Return 0 or 1 for the half turn in which an angle from the near-toggle [degree] lies: about 0, or about 180."""
+    return np.floor(np.mod(angle + 90.0, 360.0) / 180.0)
+
+
+def half_tangent(angle: Array, half: Array) -> Array:
+    """Return the tangent of half an angle [degree] as seen from the middle of such a half turn."""
+    return np.tan(np.radians(0.5 * signed_distance(angle, 180.0 * half)))
 
 
 def driven_elsewhere(scene: Scene) -> bool:

@@ -129,12 +129,10 @@ def parabola(brackets: Extremes) -> tuple[Array, Array]:
 
 def _refined(curves: Curves, brackets: Extremes) -> Extremes:
     """Return the extremes at their places, by the search for peaks: each has a lane and a tag of its own."""
-    count, (before, place, after) = len(brackets.curve), brackets.x
+    count, place = len(brackets.curve), brackets.x[1]
     lanes, best = np.zeros((search.BRACKET_ROWS, search.in_blocks(count))), np.empty((search.BEST_ROWS, count))
-    lanes[[search.XA, search.XB, search.XC], :count] = brackets.x
-    lanes[[search.FA, search.FB, search.FC], :count] = -brackets.sign * brackets.values
-    lanes[search.FIRST_WIDTH, :count], lanes[search.WIDTH, :count] = after - before, 4.0 * (after - before)
-    lanes[search.FLOOR, :count], lanes[search.TAG, :count] = brackets.noise, np.arange(count)
+    before, middle, after = zip(brackets.x, -brackets.sign * brackets.values, strict=True)
+    search.open_bracket(lanes, slice(count), before, middle, after, 0.0, 0.0, np.arange(count), brackets.noise)
     best[search.PEAK], best[search.PEAK_X] = lanes[search.FB, :count], place
 
     def heights(tag: Array, x: Array) -> Array:
@@ -143,10 +141,8 @@ def _refined(curves: Curves, brackets: Extremes) -> Extremes:
     with np.errstate(all="ignore"):
         refine(curves.x.size, lanes, count, best, heights)
     value, noise = curves.at(brackets.curve, best[search.PEAK_X])
-    x, values = (
-        np.stack([before, best[search.PEAK_X], after]),
-        np.stack([brackets.values[0], value, brackets.values[2]]),
-    )
+    x, values = brackets.x.copy(), brackets.values.copy()
+    x[1], values[1] = best[search.PEAK_X], value
     return brackets._replace(x=x, values=values, noise=noise)
 
 

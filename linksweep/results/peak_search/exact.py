@@ -20,8 +20,9 @@ from typing import Any
 
 import numpy as np
 
+from linksweep.base.degrees import signed_distance
 from linksweep.base.frozen import cached_beside
-from linksweep.engine.peaks.evaluators import FAR, FAR_WIDTH, NEAR_WIDTH, TANGENT
+from linksweep.engine.peaks.evaluators import FAR, TANGENT, WIDTHS
 from linksweep.engine.peaks.find_peaks import Peaks, find_peaks
 from linksweep.engine.quantity import regardless_of_jams
 from linksweep.engine.run import Field, Sizes
@@ -79,9 +80,9 @@ def peaks_within(
     _raise_to_poles(scene, peaks, part, designs)
     middle, half = 0.5 * (part[0] + part[1]), 0.5 * (part[1] - part[0])
     for *_, angle, _bound, _samples in peaks.values():
-        away = np.mod(angle.values - middle + 0.5 * scene.period, scene.period) - 0.5 * scene.period
-        ends = [away < ASIDE - half, away > half - ASIDE]
-        angle.values[...] = np.select(ends, part, middle + away)
+        from_middle = signed_distance(angle.values, middle, scene.period)
+        ends = [from_middle < ASIDE - half, from_middle > half - ASIDE]
+        angle.values[...] = np.select(ends, part, middle + from_middle)
     return peaks
 
 
@@ -146,34 +147,42 @@ def _follow_all(
 def _fused_first(scene: Scene, signals: tuple[str, ...], assembly: Field) -> dict[str, SignalPeak]:
     """Return peaks from the fused search of whole turns, or of their pieces, raised to those along paths where its
     samples do not suffice."""
-    names, turning = (*signals, "assembly"), _turning(scene, signals)
+    turning = _turning(scene, signals)
+    constant = tuple(signal for signal in signals if signal not in turning)
     whole, partly = (_designs_of(scene, assembly, kind) for kind in (EVERYWHERE, PARTLY))
-    arcs_known = _arcs_known(scene, names, partly)
-    partly, also_searched = (partly, partly[:0]) if arcs_known else (partly[:0], partly)
-    searched = np.union1d(whole, also_searched) if len(also_searched) else whole
-    peaks = _constants(scene, tuple(signal for signal in signals if signal not in turning), searched)
-    rubbing = rubbing_signals(scene, turning)
-    divided = designs_without_jams(scene, whole) if rubbing else whole[:0]
-    free = tuple(signal for signal in turning if signal not in rubbing) if divides(scene) else ()
-    peaks |= _fused(scene, free, searched, True)
-    others = tuple(signal for signal in turning if signal not in free)
-    smooth = not (scene.jumps() or scene.mechanism.kinks())
-    peaks |= _fused(scene, others, _without(searched, divided), smooth)
-    follow_pieces(scene, divided, {signal: peaks[signal] for signal in rubbing})
-    whole = _without(whole, divided)
-    if others and not smooth:
-        for group in groups(scene, names, whole, FEW_SAMPLES_AT_ONCE):
-            follow(group, {signal: peaks[signal] for signal in others}, (about_breaks,))
+    on_arcs = partly if _arcs_known(scene, (*signals, "assembly"), partly) else partly[:0]
+    on_turns = whole if len(on_arcs) == len(partly) else np.union1d(whole, partly)
+    peaks = _constants(scene, constant, on_turns) | _of_turns(scene, turning, on_turns, whole)
     if scene.approaches():
         narrow = np.intersect1d(with_narrow_approaches(scene), whole)
-        for group in groups(scene, names, narrow, FEW_SAMPLES_AT_ONCE):
-            follow(group, peaks, (about_approaches,))
-    if len(partly):
-        constant = tuple(signal for signal in signals if signal not in turning)
-        left = follow_arcs(scene, partly, {signal: peaks[signal] for signal in turning})
-        for own, some in ((turning, left), (constant, partly)):
+        _follow_windows(scene, peaks, narrow, about_approaches)
+    if len(on_arcs):
+        left = follow_arcs(scene, on_arcs, {signal: peaks[signal] for signal in turning})
+        for own, some in ((turning, left), (constant, on_arcs)):
             _follow_all(scene, {signal: peaks[signal] for signal in own}, (), some)
     return {signal: peaks[signal] for signal in signals}
+
+
+def _of_turns(scene: Scene, signals: tuple[str, ...], designs: Array, whole: Array) -> dict[str, SignalPeak]:
+    """Return peaks from the fused search of the turns of designs, or from that of pieces where friction alone makes
+    signals jump; about other jumps and kinks, those of designs that turn fully are raised."""
+    divided = divides(scene)
+    jumping = rubbing_signals(scene, signals) if divided else signals
+    on_pieces = designs_without_jams(scene, whole) if divided and jumping else whole[:0]
+    smooth = not (scene.jumps() or scene.mechanism.kinks())
+    peaks = _fused(scene, tuple(signal for signal in signals if signal not in jumping), designs, True)
+    own = _fused(scene, jumping, np.setdiff1d(designs, on_pieces, assume_unique=True), smooth)
+    if len(on_pieces):
+        follow_pieces(scene, on_pieces, own)
+    if not smooth:
+        _follow_windows(scene, own, np.setdiff1d(whole, on_pieces, assume_unique=True), about_breaks)
+    return peaks | own
+
+
+def _follow_windows(scene: Scene, peaks: dict[str, SignalPeak], designs: Array, windows: PathsOf) -> None:
+    """Search along windows of these designs, and replace the peaks that are exceeded."""
+    for group in groups(scene, (*peaks, "assembly"), designs, FEW_SAMPLES_AT_ONCE) if peaks else ():
+        follow(group, peaks, (windows,))
 
 
 def paths_of(scene: Scene, kind: float) -> tuple[PathsOf, ...]:
@@ -194,11 +203,6 @@ def _designs_of(scene: Scene, assembly: Field, kind: float) -> Array:
 def _arcs_known(scene: Scene, names: tuple[str, ...], designs: Array) -> bool:
     """Return whether the arcs of designs that move over part of a turn are known in closed form."""
     return len(designs) > 0 and any(arc_ends(group) for group in groups(scene, names, designs[:1]))
-
-
-def _without(designs: Array, others: Array) -> Array:
-    """Return the designs that are not among others."""
-    return np.setdiff1d(designs, others, assume_unique=True) if len(others) else designs
 
 
 def peaks_where(good: Field, peaks: dict[str, SignalPeak]) -> dict[str, SignalPeak]:
@@ -247,8 +251,8 @@ def _fused(scene: Scene, signals: tuple[str, ...], designs: Array, smooth: bool)
     places = ((TANGENT, (scene.mechanism.index, ONE)), (FAR, (scene.mechanism.index,)))
     for group in groups(scene, signals, designs, AT_ONCE):
         rows, middle = np.arange(len(group.designs)), group.number(scene.mechanism.near_toggle_angle)
-        names = (*signals, NEAR_WIDTH, FAR_WIDTH)
-        request, inputs_of_group = group.one_by_one(scene.table.between_samples, names, rows, {}, places)
+        names, table = (*signals, *WIDTHS), scene.table.between_samples
+        request, inputs_of_group = group.one_by_one(table, names, rows, {}, places)
         for some in find_peaks(request, signals, inputs_of_group, {ONE: len(rows)}, smooth, sparse):
             angles = angle_in_period(some.angle + middle, scene.period)
             for signal, *numbers in zip(some.signals, some.value, angles, some.beyond, some.evaluations, strict=True):
@@ -262,10 +266,10 @@ def _between_samples(scene: Scene, signals: tuple[str, ...]) -> Plan:
     index = scene.mechanism.index
     forms = tuple((name, form) for name, form in scene.at_one_angle.inputs.forms if name not in GRID_ROWS)
     table = scene.table.between_samples
-    widths = plan(table, (NEAR_WIDTH, FAR_WIDTH), forms)
+    widths = plan(table, WIDTHS, forms)
     dims = {dim: None for node in widths.outputs.values() for dim in widths.dims(node)}
     forms += ((TANGENT, (index, *dims)), (FAR, (index,)))
-    return plan(table, (*signals, NEAR_WIDTH, FAR_WIDTH), forms)
+    return plan(table, (*signals, *WIDTHS), forms)
 
 
 def _turning(scene: Scene, signals: tuple[str, ...]) -> tuple[str, ...]:

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from linksweep.engine.peaks.evaluators import FAR_WIDTH, NEAR_WIDTH
+from linksweep.engine.peaks.evaluators import WIDTHS
 from linksweep.engine.quantity import Table
 from linksweep.engine.run import Field, Fields, evaluate
 from linksweep.engine.trace.plan import InputForms, Plan, plan
@@ -53,9 +53,10 @@ class Group(NamedTuple):
         """Return values (names, pairs) at pairs of a design of the group, by its row, and an angle [degree]."""
         return quantities_at(self.scene, names, self.designs[rows], angles)
 
-    def of(self, name: str, rows: Array) -> Callable[[Array], Array]:
-        """Return the function that evaluates a quantity of the designs in these rows at an angle [degree] of each."""
-        return lambda angles: self.values((name,), rows, angles)[0]
+    def of(self, name: str, rows: Array) -> Callable[[Array, Array], Array]:
+        """Return the function that evaluates a quantity of some of the designs in these rows at an angle [degree] of
+        each."""
+        return lambda which, angles: self.values((name,), rows[which], angles)[0]
 
     def constants(self, *names: str) -> Array:
         """Return values (names, designs) of quantities that depend on no angle."""
@@ -73,7 +74,7 @@ class Group(NamedTuple):
         if self.limits is not None:
             middle = self.number(self.scene.mechanism.near_toggle_angle)
             return self.limits.near_toggle - middle[:, None], self.limits.near_toggle_width
-        widths = self.constants(NEAR_WIDTH, FAR_WIDTH).T
+        widths = self.constants(*WIDTHS).T
         return np.broadcast_to([0.0, 180.0], widths.shape), widths
 
     def zeros(self, kind: str) -> Array:
@@ -194,27 +195,3 @@ def _with_own_loads(scene: Scene, places: Places) -> Group:
     inside = {COMBINED: inverse.ravel()} | {dim: at for dim, at in places.items() if dim not in own}
     designs = np.ravel_multi_index(tuple(inside[dim] for dim in sizes), tuple(sizes.values()))
     return Group(part, designs, places, scene.quick.angles)
-
-
-Point = tuple[Array, Array]
-"""Angles [degree], and the values of a quantity there."""
-
-
-def crossing(values_at: Callable[[Array], Array], start: Point, end: Point, steps: int) -> Array:
-    """Return angles near which a quantity of some designs crosses 0 between two points, by the Illinois method.
-
-    All designs take the same number of steps: one step evaluates them together.
-
-    Source: Dowell and Jarratt, A modified regula falsi method, BIT 11 (1971).
-    """
-    (a, f_a), (b, f_b) = start, end
-    for _ in range(steps):
-        with np.errstate(all="ignore"):
-            x = b - f_b * (b - a) / (f_b - f_a)
-        x = np.where(np.isfinite(x), x, 0.5 * (a + b))  # where the line through both has no zero
-        f = values_at(x)
-        f = np.nan_to_num(f)  # where there is no value, as in a jam, the place itself is near enough
-        beyond = (f < 0.0) == (f_b < 0.0)
-        a, f_a = np.where(beyond, a, b), np.where(beyond, 0.5 * f_a, f_b)
-        b, f_b = x, f
-    return b

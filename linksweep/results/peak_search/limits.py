@@ -17,6 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from linksweep.base.degrees import OFF_ROUND
 from linksweep.engine.peaks.samples import GRADES, grades
 from linksweep.engine.quantity import Limit
 from linksweep.engine.run import Field
@@ -30,8 +31,8 @@ from linksweep.scene.scene import Scene
 
 AT_ONCE = 512
 """Designs searched together over one turn, so that the memory for it does not grow with a study."""
-EVEN, OFF_ROUND = 360, 0.381966
-"""Even samples of a turn or an arc; the first one, in steps: off round angles, where machines have their toggles."""
+EVEN = 360
+"""Even samples of a turn or an arc."""
 NEAREST = 1e-11
 """Distance of the closest sample from the end of an arc, relative to its length."""
 WIDTH_STEPS = 5

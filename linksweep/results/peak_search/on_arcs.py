@@ -13,7 +13,7 @@ import numpy as np
 
 from linksweep.engine.peaks.samples import HALF
 from linksweep.engine.quantity import LAST_UNJAMMED
-from linksweep.results.peak_search.along_paths import SignalPeak, angle_in_period, limits_by_polynomials, raise_to
+from linksweep.results.peak_search.along_paths import Best, SignalPeak, angle_in_period, limits_by_polynomials, raise_to
 from linksweep.results.peak_search.arcs import NEAREST, arc_ends, steps_at_ends
 from linksweep.results.peak_search.between import driven_elsewhere
 from linksweep.results.peak_search.groups import Group, groups
@@ -73,21 +73,6 @@ class Arcs(NamedTuple):
         """Return angles (arc, place) at distances x (arc, place) from the starts (0) or ends (1) of arcs."""
         away = self.length[:, None] * np.sin(0.5 * x) ** 2
         return np.where(ends > 0, self.end[:, None] - away, self.start[:, None] + away)
-
-
-class Best(NamedTuple):
-    """The highest values of signals on arcs (signal, arc), their angles from the near-toggle [degree], bounds, and
-    counts of samples."""
-
-    value: Array
-    angle: Array
-    bound: Array
-    samples: Array
-
-    def raise_to(self, higher: Array, value: Array | float, angle: Array, bound: Array | float) -> None:
-        """Replace values by higher ones."""
-        for own, numbers in zip(self, (value, angle, bound), strict=False):
-            np.copyto(own, numbers, where=higher)
 
 
 def follow_arcs(scene: Scene, designs: Array, peaks: dict[str, SignalPeak]) -> Array:

@@ -13,6 +13,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from linksweep.base.degrees import OFF_ROUND
+from linksweep.engine.roots import roots
 from linksweep.results.peak_search.approaches import (
     NARROW_NEAR_TOGGLE,
     REACH,
@@ -22,14 +24,12 @@ from linksweep.results.peak_search.approaches import (
 )
 from linksweep.results.peak_search.between import driven_elsewhere
 from linksweep.results.peak_search.friction.contacts import contact_angles
-from linksweep.results.peak_search.groups import Group, crossing
+from linksweep.results.peak_search.groups import Group
 from linksweep.results.peak_search.limits import graded_samples
 from linksweep.scene.pairs import Array, by_row, in_order, in_period, joined
 
 PER_TURN = 720
 """Even samples of a turn: loads over the angle may vary as quickly as an engine's indicator diagram."""
-OFF_ROUND = 0.381966
-"""First even sample, in steps (1 − 0.618…, the golden section): off round angles, where near-toggles have samples."""
 EVEN_STEP = 3.0
 """Step of even samples beside those about near-toggles that are not opposite to each other [degree]."""
 MERGED = 1e-3
@@ -227,8 +227,8 @@ def _changes_of_sign(group: Group, name: str) -> Array:
     row, before = np.nonzero((values < 0.0) & (following > 0.0) | (values > 0.0) & (following < 0.0))
     start = angles[row, before]
     end = start + np.mod(angles[row, (before + 1) % count] - start, group.scene.period)
-    x = crossing(group.of(name, row), (start, values[row, before]), (end, following[row, before]), KINK_STEPS)
-    return by_row(row, x, designs)
+    heights = np.stack([values[row, before], following[row, before]])
+    return by_row(row, roots(group.of(name, row), np.stack([start, end]), heights, KINK_STEPS), designs)
 
 
 def approach_samples(group: Group, angles: Array | None = None) -> Array:

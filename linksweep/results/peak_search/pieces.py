@@ -15,7 +15,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from linksweep.engine.peaks.evaluators import ALONG, END, FAR, FAR_WIDTH, NEAR_WIDTH, PIECE, TANGENT
+from linksweep.base.degrees import signed_distance
+from linksweep.engine.peaks.evaluators import ALONG, END, FAR, PIECE, TANGENT, WIDTHS
 from linksweep.engine.peaks.find_peaks import find_peaks_on_pieces, zeros_of_pieces
 from linksweep.engine.peaks.samples import FEW, HALF
 from linksweep.engine.quantity import Row, Table
@@ -23,9 +24,9 @@ from linksweep.engine.run import Field, Fields, evaluate
 from linksweep.engine.trace.plan import Plan, plan
 from linksweep.physics.algebra import planar
 from linksweep.physics.closures import crank_angle
-from linksweep.results.peak_search.along_paths import SignalPeak, angle_in_period, put
-from linksweep.results.peak_search.between import ONE
-from linksweep.results.peak_search.friction.directions import divides, speed_at_one_angle
+from linksweep.results.peak_search.along_paths import Best, SignalPeak, angle_in_period, put
+from linksweep.results.peak_search.between import ONE, half_tangent, half_turn_of
+from linksweep.results.peak_search.friction.directions import speed_at_one_angle
 from linksweep.results.peak_search.groups import Group, groups
 from linksweep.results.peak_search.paths import distinct
 from linksweep.results.peak_search.side_by_side import FASTEST
@@ -36,10 +37,10 @@ from linksweep.scene.scene import Scene
 
 AT_ONCE = 8192
 """Designs whose pieces are searched together."""
-ENDS, HALF_TURN = ("piece_from", "piece_to"), "far_half"
-"""Inputs of a piece: its ends as tangents of half the angle from the middle of a half turn; and that half turn."""
-WIDTHS = "width_at_start", "width_at_end"
-"""Inputs of a piece besides its ends: the widths of near-toggles as seen from them."""
+ENDS = "piece_from", "piece_to"
+"""Inputs of a piece besides its half turn: its ends, as tangents of half the angle from the middle of that."""
+WIDTHS_AT_ENDS = "width_at_start", "width_at_end"
+"""Inputs of a piece, too: the widths of near-toggles as seen from its ends."""
 MIDDLE, ANGLE = "piece_middle", "angle_on_piece"
 """Input of a piece over whose angle something changes, its middle as such a tangent; and the angle from there [rad]."""
 CHANGING_AT_ONCE = 2048
@@ -57,9 +58,6 @@ SHORTEST = 1e-6
 """Length of a piece of which only the start counts [degree]."""
 BEYOND = 30.0
 """How far a piece may reach beyond its half turn, rather than be cut at the border [degree]."""
-
-Numbers = tuple[Array, ...]
-"""Of a signal's peak: value, angle [degree], bound and samples, a number for each design."""
 
 
 class Pieces(NamedTuple):
@@ -100,17 +98,14 @@ class Pieces(NamedTuple):
 
     def tangents(self, angle: Array) -> Array:
         """Return the tangents of half the angles from the middles of half turns."""
-        away = np.mod(angle - 180.0 * self.half + 180.0, 360.0) - 180.0
-        return np.tan(np.radians(0.5 * away))
+        return half_tangent(angle, self.half)
 
 
 def rubbing_signals(scene: Scene, signals: tuple[str, ...]) -> tuple[str, ...]:
-    """Return those signals of a scene that depend on the direction of sliding; none where pieces are not enough."""
+    """Return those signals of a scene that depend on the direction of sliding."""
     machine = scene.mechanism
-    if not divides(scene):
-        return ()
     known = {on_piece(name) for name in machine.directions()}
-    forms = (*scene.inputs.forms, *((name, ()) for name in (*known, *ENDS, HALF_TURN, *WIDTHS, ALONG, END)))
+    forms = (*scene.inputs.forms, *((name, ()) for name in (*known, *ENDS, FAR, *WIDTHS_AT_ENDS, ALONG, END)))
     table = _table_on_pieces(scene.table, machine.directions())
     request = plan(table, signals, forms)
     return tuple(signal for signal in signals if not known.isdisjoint(request.only((signal,)).inputs))
@@ -146,7 +141,7 @@ def _by_samples(group: Group) -> Iterator[tuple[int, Group]]:
 
 def highest_on_pieces(
     group: Group, pieces: Pieces, signals: tuple[str, ...], half: int, levels: Array | None = None
-) -> Mapping[str, Numbers]:
+) -> Mapping[str, Best]:
     """Return the highest peak of each signal on the pieces of each design, which have so many samples on either side of
     the middle of each half turn; below a level (signal, design) only the highest sample."""
     order = np.argsort(pieces.counts, kind="stable")  # side by side stand designs with as many pieces
@@ -160,7 +155,7 @@ def highest_on_pieces(
         value, tangent, far, bound, samples, piece = peak
         at = np.arange(len(value)), np.nan_to_num(piece).astype(int)
         angle = angle_in_period(_angles(pieces, inputs, at, tangent, far) + frame, period)
-        highest[signal] = value[back], angle[back], bound[back], samples[back]
+        highest[signal] = Best(value[back], angle[back], bound[back], samples[back])
     return highest
 
 
@@ -211,8 +206,8 @@ def _between_jumps(group: Group) -> Pieces:
     breaks, narrow = breaks_and_near_toggles(group)
     ends = [*breaks, narrow]
     if _over_angle(group.scene) is None:
-        away = np.abs(np.mod(_side_by_side(breaks)[:, :, None] - BORDERS + 180.0, 360.0) - 180.0)
-        ends.append(np.where((away < BEYOND).any(axis=1), np.nan, BORDERS))
+        close = np.abs(signed_distance(_side_by_side(breaks)[:, :, None], BORDERS)) < BEYOND
+        ends.append(np.where(close.any(axis=1), np.nan, BORDERS))
     cuts = distinct(_side_by_side(ends))
     return between(cuts, cuts[:, 0] + group.scene.period, len(group.designs))
 
@@ -256,7 +251,7 @@ def between(cuts: Array, last: Array, designs: int) -> Pieces:
     ends = np.concatenate([cuts[:, 1:], np.full((len(cuts), 1), np.nan)], axis=1)
     ends = np.where(np.isnan(ends), last[:, None], ends)
     start, end = (np.where(np.isnan(cuts), x[:, :1], x) for x in (cuts, ends))
-    half = np.floor(np.mod(0.5 * (start + end) + 90.0, 360.0) / 180.0)
+    half = half_turn_of(0.5 * (start + end))
     return Pieces(start, end, half, np.broadcast_to(counts, designs), np.empty((0, designs, 0)))
 
 
@@ -282,7 +277,7 @@ def _angles(pieces: Pieces, inputs: Fields, at: tuple[Array, ...], tangent: Arra
     square = tangent * tangent
     share = square / (1.0 + square)
     shape = len(pieces.counts), pieces.start.shape[1]
-    first, last, half = (np.broadcast_to(inputs[name].values, shape)[at] for name in (*ENDS, HALF_TURN))
+    first, last, half = (np.broadcast_to(inputs[name].values, shape)[at] for name in (*ENDS, FAR))
     x = np.where(far > 0.0, last - (last - first) * share, first + (last - first) * share)
     angle, start = 2.0 * np.degrees(np.arctan(x)) + 180.0 * half, np.broadcast_to(pieces.start, shape)[at]
     return start + np.mod(angle - start + 90.0, 360.0) - 90.0
@@ -295,8 +290,7 @@ def values_at(group: Group, names: tuple[str, ...], angles: Array) -> Array:
     """Return values (name, design, nth) of quantities at angles (design, nth) from the near-toggle [degree]: at the
     starts of pieces."""
     scene, known = group.scene, np.full(len(angles), angles.shape[1])
-    half = np.floor(np.mod(angles + 90.0, 360.0) / 180.0)
-    pieces = Pieces(angles, angles + SHORTEST, half, known, np.empty((0, *angles.shape)))
+    pieces = Pieces(angles, angles + SHORTEST, half_turn_of(angles), known, np.empty((0, *angles.shape)))
     if scene.mechanism.directions():
         pieces = pieces._replace(directions=_directions_at(group, pieces, np.zeros((1, 1))))
     table, own = _on_own_pieces(group, pieces)
@@ -311,16 +305,16 @@ def _evaluated(group: Group, pieces: Pieces, names: tuple[str, ...]) -> tuple[Pl
     index, (table, own) = group.scene.mechanism.index, _on_own_pieces(group, pieces)
     start, end = (np.atleast_2d(own[name].values) for name in ENDS)
     widths = np.minimum(_widths(pieces, start, end, *group.near_toggles()), pieces.widths)
-    own |= {name: _of_pieces(values) for name, values in zip(WIDTHS, widths, strict=True)}
+    own |= {name: _of_pieces(values) for name, values in zip(WIDTHS_AT_ENDS, widths, strict=True)}
     places = ((ALONG, (index, ONE, PIECE)), (END, (index,)))
-    return group.one_by_one(table, (*names, NEAR_WIDTH, FAR_WIDTH), np.arange(len(group.designs)), own, places)
+    return group.one_by_one(table, (*names, *WIDTHS), np.arange(len(group.designs)), own, places)
 
 
 def _on_own_pieces(group: Group, pieces: Pieces) -> tuple[Table, dict[str, Field]]:
     """Return the table of quantities on pieces, and the inputs of the pieces but for widths of near-toggles."""
     scene, directions = group.scene, group.scene.mechanism.directions()
     numbers = pieces.tangents(pieces.start), pieces.tangents(pieces.end), pieces.half
-    own = dict(zip((*ENDS, HALF_TURN), numbers, strict=True))
+    own = dict(zip((*ENDS, FAR), numbers, strict=True))
     own |= {on_piece(name): values for name, values in zip(directions, pieces.directions, strict=True)}
     table, changing = _table_on_pieces(scene.table, directions), _over_angle(scene)
     if changing is not None:
@@ -352,7 +346,7 @@ def on_piece(name: str) -> str:
 def _table_on_pieces(table: Table, directions: tuple[str, ...], changing: tuple[Row, ...] = ()) -> Table:
     """Return the table between samples with places on pieces, and with these rows of what changes over the angle."""
     between = table.between_samples
-    known = {NEAR_WIDTH: WIDTHS[0], FAR_WIDTH: WIDTHS[1]} | {name: on_piece(name) for name in directions}
+    known = dict(zip(WIDTHS, WIDTHS_AT_ENDS, strict=True)) | {name: on_piece(name) for name in directions}
     rows = (
         Row(crank_angle.place_on_piece, ("half_tangent",), (ALONG, END, *ENDS)),
         Row(crank_angle.angle_on_piece, (ANGLE,), ("half_tangent", MIDDLE)),
@@ -378,13 +372,14 @@ def _widths(pieces: Pieces, start: Array, end: Array, angles: Array, widths: Arr
         rows = np.flatnonzero(width < NARROW)
         if len(rows):
             first, last, half = (x if len(x) == 1 else x[rows] for x in (start, end, pieces.half))
-            away = np.mod(_in_one_row(angle[rows, None]) - 180.0 * half + 180.0, 360.0) - 180.0
-            near = np.flatnonzero((np.abs(away) < 180.0 - BEYOND).any(axis=0))
-            x, at, length = np.tan(np.radians(0.5 * away[:, near])), np.ix_(rows, near), (last - first)[:, near]
+            from_middle = signed_distance(_in_one_row(angle[rows, None]), 180.0 * half)
+            beside = np.abs(from_middle) < 180.0 - BEYOND
+            near = np.flatnonzero(beside.any(axis=0))
+            x, at, length = np.tan(np.radians(0.5 * from_middle[:, near])), np.ix_(rows, near), (last - first)[:, near]
             height = (1.0 + x * x) * width[rows, None]
             for of_end, distance in zip(seen, (x - first[:, near], last[:, near] - x), strict=True):
                 limit = _imaginary_root(distance, length, height)
-                of_end[at] = np.where(np.abs(away[:, near]) < 180.0 - BEYOND, np.minimum(of_end[at], limit), of_end[at])
+                of_end[at] = np.where(beside[:, near], np.minimum(of_end[at], limit), of_end[at])
     return seen
 
 

@@ -22,7 +22,7 @@ from linksweep.results.peak_search.arcs import arc_ends, arcs, within
 from linksweep.results.peak_search.between import EVERYWHERE, PARTLY
 from linksweep.results.peak_search.groups import Group, assembled_groups, empty_over_all
 from linksweep.results.peak_search.paths import Part, Paths, turns
-from linksweep.scene.pairs import Array
+from linksweep.scene.pairs import Array, some_of
 from linksweep.scene.scene import Scene
 
 Power = tuple[str, int]
@@ -75,10 +75,6 @@ class Pieces(NamedTuple):
     path: Array
     start: Array
     end: Array
-
-    def some(self, which: Array) -> Pieces:
-        """Return the pieces with these indices."""
-        return Pieces(*(numbers[which] for numbers in self))
 
     def halved(self) -> Pieces:
         """Return the first halves of all pieces, then their second halves."""
@@ -188,7 +184,7 @@ def _integrals(group: Group, integrands: tuple[Integrand, ...], paths: Paths) ->
         if not halved.any():
             return total
         pending, infinite = np.tile(unsettled[:, halved], 2), np.where(unsettled, np.copysign(np.inf, rules.outer), 0.0)
-        owner, pieces = pieces.path, pieces.some(np.flatnonzero(halved)).halved()
+        owner, pieces = pieces.path, some_of(pieces, halved).halved()
     return total + _by_owner(infinite, owner, count)
 
 

@@ -20,7 +20,7 @@ from linksweep.results.peak_search.between import EVERYWHERE, PARTLY
 from linksweep.results.peak_search.exact import paths_of
 from linksweep.results.peak_search.friction.jams import may_jam
 from linksweep.results.peak_search.groups import Group, groups
-from linksweep.scene.pairs import Array, in_period
+from linksweep.scene.pairs import Array, in_period, joined
 from linksweep.scene.scene import Scene
 
 
@@ -42,7 +42,7 @@ def equal_rises(scene: Scene, signal: str, designs: Array, level: Array) -> Equa
                 path, angle, height = rises(group, signal, paths, level[rows[paths.row]])
                 high = height >= level[rows[paths.row[path]]]
                 parts.append(Equals(rows[paths.row[path]][high], angle[high], height[high]))
-    return Equals(*map(np.concatenate, zip(*parts, strict=True)))
+    return joined(parts)
 
 
 def at_arc_ends(scene: Scene, designs: Array, angles: Array, near: float) -> Array:

@@ -15,13 +15,13 @@ import numpy as np
 
 from linksweep.engine.near_zero import dips, samples
 from linksweep.engine.near_zero.find import dips_and_zeros
-from linksweep.engine.peaks.evaluators import ANYWHERE, FAR, FAR_WIDTH, NEAR_WIDTH, OF_HALF, TANGENT
+from linksweep.engine.peaks.evaluators import ANYWHERE, FAR, OF_HALF, TANGENT, WIDTHS
 from linksweep.engine.quantity import Limit, Row, Table
 from linksweep.engine.run import Field, Fields, evaluate
 from linksweep.engine.trace.plan import Plan
 from linksweep.physics.algebra import planar
 from linksweep.physics.algebra.arithmetic import Number
-from linksweep.results.peak_search.between import ONE, number_of, one_by_one
+from linksweep.results.peak_search.between import ONE, half_tangent, half_turn_of, number_of, one_by_one
 from linksweep.scene.pairs import Array, by_row, joined, some_of
 from linksweep.scene.scene import Scene
 
@@ -41,7 +41,6 @@ MORE_LOOKS = 3
 """Looks at a design, besides one for each of its limits, before it is left to another search."""
 KINDS = {"toggle": dips.TOGGLE, "wedge": dips.BOUND, "dead_centre": dips.BOUND, "jump": dips.JUMP}
 """Kinds of signals, by what their zeros are."""
-WIDTHS = (NEAR_WIDTH, FAR_WIDTH)
 WIDTH = "turn_width"
 """Input that takes the place of the widths of near-toggles."""
 
@@ -156,10 +155,9 @@ def close_at(scene: Scene, limits: tuple[Limit, ...], designs: Array, angles: Ar
     if not (toggles and len(designs)):
         return np.full(len(designs), True)
     signals, noise = ([name for limit in toggles for name in getattr(limit, part)] for part in ("signals", "noise"))
-    away = angles - number_of(scene, scene.mechanism.near_toggle_angle, designs)
-    half = np.floor(np.mod(away + 90.0, 360.0) / 180.0)
-    tangent = np.tan(np.radians(0.5 * (np.mod(away - 180.0 * half + 180.0, 360.0) - 180.0)))
-    own = {TANGENT: Field((ONE,), tangent), FAR: Field((ONE,), half)}
+    angles = angles - number_of(scene, scene.mechanism.near_toggle_angle, designs)
+    half = half_turn_of(angles)
+    own = {TANGENT: Field((ONE,), half_tangent(angles, half)), FAR: Field((ONE,), half)}
     request, inputs = one_by_one(scene, designs, scene.table.between_samples, (*signals, *noise), own, ())
     values = evaluate(request, inputs, scene.grid(1), {ONE: len(designs)})
     return np.all([values[name].values >= -values[by].values for name, by in zip(signals, noise, strict=True)], axis=0)

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import xarray as xr
 
+from linksweep.base.degrees import signed_distance
 from linksweep.base.frozen import cached_beside
 from linksweep.base.validate import Rule
 from linksweep.engine.quantity import Row
@@ -172,8 +173,8 @@ def _cuts(scene: Scene, knots: Array) -> list[int]:
     """Return the numbers of the knots at which pieces start: all of pchip curves, whose curvature jumps there, so that
     a peak beside a knot may lie between two samples, and of speeds, of whose acceleration that is true."""
     corners = np.array([jump for jump in scene.jumps() if not hasattr(jump, "dims")])
-    away = np.mod(knots[:, None] - corners + 0.5 * scene.mechanism.period, scene.mechanism.period)
-    corner = (np.abs(away - 0.5 * scene.mechanism.period) < ROUNDED).any(axis=1)
+    away = signed_distance(knots[:, None], corners, scene.mechanism.period)
+    corner = (np.abs(away) < ROUNDED).any(axis=1)
     corner |= scene.changes_speed or any(getattr(load, "interpolation", None) == "pchip" for load in scene.loads)
     cuts = [0]
     for k in range(1, len(knots) - 1):

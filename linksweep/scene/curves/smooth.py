@@ -12,6 +12,9 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
+from numpy.polynomial.polynomial import polyval
+
+from linksweep.base.degrees import OFF_ROUND
 
 Array = np.ndarray
 Function = Callable[[Array], Any]
@@ -26,8 +29,8 @@ SHORTEST = 1.0
 """Intervals below this length are not halved [degree]: the function jumps or bends there."""
 MOST = 64
 """Intervals of each turn, at most, besides those of known knots: more take longer than a search along paths."""
-STEP, OFF_ROUND = 0.02, 0.381966
-"""Distance of the dense samples [degree], and the first one, in steps: off round angles, at which functions jump."""
+STEP = 0.02
+"""Distance of the dense samples [degree]; the first one is off round angles, at which functions jump."""
 BESIDE_BREAKS = np.geomspace(1e-9, 1.0, 60)
 """Distances of further dense samples from a break, beside which a function may be narrow [degree]."""
 
@@ -78,7 +81,7 @@ def smooth_knots(
         share, wrong = (dense - middle[interval]) / half[interval], np.zeros(len(half), dtype=bool)
         for function, values in zip(functions, exact, strict=True):
             terms = coefficients(chebyshev(TERMS), np.asarray(function(places)).reshape(-1, TERMS))
-            error = np.abs(power_sum(terms[interval], share) - values)
+            error = np.abs(polyval(share, terms[interval].T, tensor=False) - values)
             wrong[interval[error > ROUNDING * np.max(np.abs(values))]] = True
         if not wrong.any():
             return knots
@@ -96,11 +99,3 @@ def divided(angles: Array, period: float, longest: float) -> Array:
         np.linspace(start, end, math.ceil((end - start) / longest), endpoint=False) for start, end in pairwise(knots)
     ]
     return np.append(np.concatenate(parts), knots[-1])
-
-
-def power_sum(terms: Array, place: Array) -> Array:
-    """Return the sums of coefficients (place, power) times powers of the places."""
-    total = terms[:, -1]
-    for power in range(terms.shape[1] - 2, -1, -1):
-        total = total * place + terms[:, power]
-    return total

@@ -337,3 +337,16 @@ def test_a_ram_that_turns_round_three_times_within_a_degree():
     assert (np.isfinite(near).sum(axis=1) == 3).all()
     expected = np.stack([np.array(before) - outermost, 0.0 * away, away], axis=1)
     np.testing.assert_allclose(near[np.isfinite(near)].reshape(-1, 3), expected, rtol=0.0, atol=1e-8)
+
+
+def test_a_linkage_of_eleven_dyads_has_peaks():
+    """Its limits have 66 signals with their opposites and bounds: np.choose takes 64."""
+    pins, ground, lengths = iter("CDEFGHIJKLMNOPQRSTUVWX"), {"A": (0.0, 0.0)}, {"crank": 0.05}
+    text, before = ["crank A-B"], "B"
+    for k, (pin, fixed) in enumerate(zip(pins, pins, strict=True)):
+        text += [f"coupler{k} {before}-{pin}", f"rocker{k} {pin}-{fixed}"]
+        ground[fixed], before = (0.3 * (k + 1), -0.2), pin
+        lengths |= {f"coupler{k}": 0.3, f"rocker{k}": 0.2}
+    links = {name: ls.Link(length, 0.3, 1e-3) for name, length in lengths.items()}
+    scene = ls.Scene(ls.Linkage(", ".join(text), ground=ground, **links), omega2=10.0)
+    assert ls.peaks(scene, of=["T12"]).T12_max > 0.0

@@ -10,12 +10,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from linksweep.base.degrees import OFF_ROUND
 from linksweep.engine.quantity import LAST_UNJAMMED
 from linksweep.engine.run import Field
 from linksweep.results.peak_search.between import EVERYWHERE
 from linksweep.results.peak_search.groups import Group, all_at_once, different, empty_over_all, groups
-from linksweep.results.peak_search.paths import ASIDE, OFF_ROUND, jump_angles
-from linksweep.scene.pairs import Array, by_row, in_order
+from linksweep.results.peak_search.paths import ASIDE, jump_angles
+from linksweep.scene.pairs import Array, by_row, in_order, joined, some_of
 from linksweep.scene.scene import Scene
 
 STEP = 2.0
@@ -80,7 +81,7 @@ def jam_tables(scene: Scene) -> tuple[tuple[str, ...], Array, Array, Array]:
         jams = _jams(group)
         places = tuple(group.places[dim][jams.row] for dim in dims)
         parts.append(jams._replace(row=np.ravel_multi_index(places, values.shape) if dims else jams.row))
-    row, *numbers = map(np.concatenate, zip(*parts, strict=True))
+    row, *numbers = joined(parts)
     tables = (by_row(row, number.astype(float), values.size) for number in numbers)
     start, end, place = (table.reshape(*values.shape, table.shape[1]) for table in tables)
     return dims, start, end, place
@@ -98,13 +99,12 @@ def _jams(group: Group) -> Jams:
     after, end = place[following[changes]], angle[_next_of_row(row[changes])] if len(changes) else angle
     end = end + np.where(end <= angle, period, 0.0)
     always = np.flatnonzero((place != FREE) & ~np.isin(row, row[changes]) & (np.diff(row, prepend=-1) > 0))
-    jams = Jams(row[changes], angle, end, after)
-    jams = Jams(*(numbers[after != FREE] for numbers in jams))
+    ended = some_of(Jams(row[changes], angle, end, after), after != FREE)
     whole = Jams(row[always], np.zeros(len(always)), np.full(len(always), period), place[always])
-    row, start, end, place = (np.concatenate(both) for both in zip(jams, whole, strict=True))
-    turns = np.floor(start / period) * period
-    order = np.lexsort((start - turns, row))
-    return Jams(row[order], (start - turns)[order], (end - turns)[order], place[order])
+    jams = joined([ended, whole])
+    turns = np.floor(jams.start / period) * period
+    jams = jams._replace(start=jams.start - turns, end=jams.end - turns)
+    return some_of(jams, np.lexsort((jams.start, jams.row)))
 
 
 def _pieces(group: Group) -> Pieces:

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import singledispatch
 from itertools import chain
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -25,7 +25,7 @@ from linksweep.results.peak_search.groups import Group, all_at_once
 from linksweep.results.peak_search.limits import limits_of
 from linksweep.results.peak_search.paths import starts_of_motion
 from linksweep.scene.dimensions import side_by_side
-from linksweep.scene.pairs import Array
+from linksweep.scene.pairs import Array, joined
 from linksweep.scene.scene import Scene
 
 CLOSEST = 1e-8
@@ -47,8 +47,13 @@ KINDS = {"dead_centre": "dead_centre", "wedge": "jam"}
 OF_OUTPUT = ("torque_ratio", "mechanical_advantage")
 """Quantities with a pole where the output stands still, whichever link drives."""
 
-Candidates = tuple[Array, Array, Array]
-"""Possible poles: the row of its design in a group, the angle, and the distance of the closest sample [degree]."""
+
+class Candidates(NamedTuple):
+    """Possible poles: the row of its design in a group, the angle, and the distance of the closest sample [degree]."""
+
+    row: Array
+    angle: Array
+    step: Array
 
 
 def may_have_poles(scene: Scene, signals: tuple[str, ...]) -> bool:
@@ -115,15 +120,9 @@ def designs_with_candidates(scene: Scene, designs: Array, signals: tuple[str, ..
 @singledispatch
 def pole_candidates(group: Any, signals: tuple[str, ...]) -> Candidates:
     """Return the possible poles of these signals in the whole period: loads may take several turns."""
-    row, angle, step = concatenated([_dead_centres_and_jams(group, signals), _change_points(group)])
+    row, angle, step = joined([_dead_centres_and_jams(group, signals), _change_points(group)])
     starts = starts_of_motion(group)
-    return np.repeat(row, len(starts)), np.add.outer(angle, starts).ravel(), np.repeat(step, len(starts))
-
-
-def concatenated(parts: list[Candidates]) -> Candidates:
-    """Return all candidates in one."""
-    row, angle, step = (np.concatenate(part) for part in zip(*parts, strict=True))
-    return row, angle, step
+    return Candidates(np.repeat(row, len(starts)), np.add.outer(angle, starts).ravel(), np.repeat(step, len(starts)))
 
 
 def _grows_as_a_power(size: Array) -> Array:
@@ -156,7 +155,7 @@ def designs_without_jams(scene: Scene, designs: Array) -> Array:
 def _dead_centres_and_jams(group: Group, signals: tuple[str, ...]) -> Candidates:
     angle = singular_angles(group, signals)
     row, which = np.nonzero(np.isfinite(angle))
-    return row, angle[row, which], np.full(len(row), CLOSEST)
+    return Candidates(row, angle[row, which], np.full(len(row), CLOSEST))
 
 
 def _change_points(group: Group) -> Candidates:
@@ -168,4 +167,4 @@ def _change_points(group: Group) -> Candidates:
     (status,) = group.values(("status",), row, angle)
     toggles = np.flatnonzero(status == TOGGLE)
     twice = np.repeat(toggles, len(CLOSEST_TO_TOGGLE))
-    return row[twice], angle[twice], np.tile(CLOSEST_TO_TOGGLE, len(toggles))
+    return Candidates(row[twice], angle[twice], np.tile(CLOSEST_TO_TOGGLE, len(toggles)))

@@ -12,12 +12,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from linksweep.base.degrees import signed_distance
 from linksweep.results.peak_search.arcs import arc_ends_of_whole_period
 from linksweep.results.peak_search.between import PARTLY, driven_elsewhere
 from linksweep.results.peak_search.groups import Group
 from linksweep.results.peak_search.paths import Part
 from linksweep.results.peak_search.singular.poles import pole_candidates
-from linksweep.scene.pairs import Array
+from linksweep.scene.pairs import Array, by_row
 
 CLEAR = 0.01
 """Distance from a singular place [degree] within which rounding errors may be peaks."""
@@ -52,13 +53,8 @@ class Singular(NamedTuple):
 
     def angles_of(self, designs: Array, chosen: Array) -> Array:
         """Return the chosen angles of some designs (design, nth) [degree], NaN for none."""
-        place = np.flatnonzero(chosen & np.isin(self.row, designs))
-        place = place[np.argsort(self.row[place], kind="stable")]
-        own = np.searchsorted(designs, self.row[place])
-        nth = np.arange(len(own)) - np.searchsorted(own, own)
-        angles = np.full((len(designs), 1 + nth.max(initial=0)), np.nan)
-        angles[own, nth] = self.angle[place]
-        return angles
+        own = chosen & np.isin(self.row, designs)
+        return by_row(np.searchsorted(designs, self.row[own]), self.angle[own], len(designs))
 
 
 def singular_places(group: Group, signals: tuple[str, ...]) -> Singular:
@@ -83,7 +79,7 @@ def spoilt_peaks(group: Group, places: Singular, peaks: dict[str, tuple[Array, .
     """
     signals, of_signals = tuple(peaks), zip(*peaks.values(), strict=True)
     value, at = (np.stack(numbers)[:, places.row] for numbers in of_signals)
-    away = signed_distance(places.angle, at, group.scene.period)
+    away = signed_distance(at, places.angle, group.scene.period)
 
     def values_beside(signal: Array, place: Array, beside: Array) -> Array:
         """Return one signal's values about one place each, at angles (each, …) beside it [degree]."""
@@ -110,12 +106,6 @@ def spoilt_peaks(group: Group, places: Singular, peaks: dict[str, tuple[Array, .
     spoilt = np.zeros(suspect.shape, dtype=bool)
     spoilt[signal, place] = _scatters(values_beside(signal, place, beside), reached, excess)
     return spoilt
-
-
-def signed_distance(places: Array, angle: Array, period: float) -> Array:
-    """Return how far angles lie from places, the shorter way round [degree]."""
-    distance = angle - places
-    return distance - period * np.round(distance / period)
 
 
 def _reached(beside: Array) -> Array:

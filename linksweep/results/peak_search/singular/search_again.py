@@ -7,6 +7,7 @@ from functools import partial
 
 import numpy as np
 
+from linksweep.base.degrees import signed_distance
 from linksweep.results.peak_search.along_paths import (
     SignalPeak,
     follow,
@@ -25,7 +26,6 @@ from linksweep.results.peak_search.singular.rounding_errors import (
     FARTHER,
     are_smooth,
     clear_of,
-    signed_distance,
     singular_places,
     spoilt_peaks,
 )
