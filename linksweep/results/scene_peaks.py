@@ -226,15 +226,16 @@ def _of_samples(scene: Scene, angles: ArrayLike, items: list[Request], solver: s
 
 
 def _over_time(sampled: Scene, grid: Grid, powers: tuple[Power, ...], pace: str, solver: str) -> Averages:
-    """Return means of a grid's samples, each weighted by the time that the crank takes for it."""
-    names = tuple(dict.fromkeys([name for name, _ in powers] + [pace]))
-    fields, averages = compute(sampled, grid, names, solver=solver), {}
+    """Return means of a grid's samples that are ok, each weighted by the time that the crank takes for it."""
+    of_ok = known_names(sampled, tuple(name for name, _ in powers), where_ok)
+    fields, averages = compute(sampled, grid, tuple(dict.fromkeys([*of_ok.values(), pace])), solver=solver), {}
     for name, power in powers:
-        dims = tuple(d for d in (*sampled.inputs.sizes, grid.dim) if d in {*fields[name].dims, *fields[pace].dims})
-        value, speed = aligned(fields[name], dims), np.abs(aligned(fields[pace], dims))
+        known = fields[of_ok[name]]
+        dims = tuple(d for d in (*sampled.inputs.sizes, grid.dim) if d in {*known.dims, *fields[pace].dims})
+        value, speed = aligned(known, dims), np.abs(aligned(fields[pace], dims))
         with np.errstate(all="ignore"):
-            known = ~np.isnan(value / speed)
-            total, time = np.where(known, value**power / speed, 0.0), np.where(known, 1.0 / speed, 0.0)
+            there = ~np.isnan(value / speed)
+            total, time = np.where(there, value**power / speed, 0.0), np.where(there, 1.0 / speed, 0.0)
             averages[name, power] = Field(dims[:-1], total.sum(axis=-1) / time.sum(axis=-1))
     return averages
 
