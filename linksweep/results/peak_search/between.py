@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 
-from linksweep.base.degrees import signed_distance
 from linksweep.engine.quantity import Table
 from linksweep.engine.run import Fields, Grid, evaluate
 from linksweep.engine.trace.plan import InputForms, Plan, plan
@@ -27,7 +26,8 @@ def half_turn_of(angle: Array) -> Array:
 
 def half_tangent(angle: Array, half: Array) -> Array:
     """Return the tangent of half an angle [degree] as seen from the middle of such a half turn."""
-    return np.tan(np.radians(0.5 * signed_distance(angle, 180.0 * half)))
+    away = np.mod(angle - 180.0 * half + 180.0, 360.0) - 180.0  # 0 where the distance is less than a turn's rounding
+    return np.tan(np.radians(0.5 * away))
 
 
 def driven_elsewhere(scene: Scene) -> bool:
