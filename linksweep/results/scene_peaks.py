@@ -226,17 +226,19 @@ def _of_samples(scene: Scene, angles: ArrayLike, items: list[Request], solver: s
 
 
 def _over_time(sampled: Scene, grid: Grid, powers: tuple[Power, ...], pace: str, solver: str) -> Averages:
-    """Return means of a grid's samples that are ok, each weighted by the time that the crank takes for it."""
+    """Return means of a grid's samples that are ok, each weighted by the time that the crank takes for it; NaN where it
+    stands still or turns back."""
     of_ok = known_names(sampled, tuple(name for name, _ in powers), where_ok)
     fields, averages = compute(sampled, grid, tuple(dict.fromkeys([*of_ok.values(), pace])), solver=solver), {}
     for name, power in powers:
-        known = fields[of_ok[name]]
-        dims = tuple(d for d in (*sampled.inputs.sizes, grid.dim) if d in {*known.dims, *fields[pace].dims})
-        value, speed = aligned(known, dims), np.abs(aligned(fields[pace], dims))
+        own, rate = fields[of_ok[name]], fields[pace]
+        dims = tuple(d for d in (*sampled.inputs.sizes, grid.dim) if d in {*own.dims, *rate.dims})
+        value, speed = aligned(own, dims), aligned(rate, dims)
+        known = ~np.isnan(value + speed)
+        stops = (known & (speed <= 0.0)).any(axis=-1) & (known & (speed >= 0.0)).any(axis=-1)
         with np.errstate(all="ignore"):
-            there = ~np.isnan(value / speed)
-            total, time = np.where(there, value**power / speed, 0.0), np.where(there, 1.0 / speed, 0.0)
-            averages[name, power] = Field(dims[:-1], total.sum(axis=-1) / time.sum(axis=-1))
+            total, time = (np.where(known, value**n / np.abs(speed), 0.0).sum(axis=-1) for n in (power, 0))
+            averages[name, power] = Field(dims[:-1], np.where(stops, np.nan, total / time))
     return averages
 
 

@@ -84,6 +84,57 @@ def test_each_design_has_its_own_pace(theta2):
     assert float(peaks.theta4_mean[0]) == pytest.approx(float(steady.theta4_mean), rel=1e-12)
 
 
+@pytest.mark.parametrize("slowest_at", [180.0, 213.3])
+def test_a_crank_that_nearly_stands_still_spends_its_time_there(slowest_at):
+    """ω = ω0·(1 + s − cos δ), δ from the slowest angle: a turn takes 2π/(ω0·√((1 + s)² − 1)), nearly all there."""
+    slowest = 2.0**-30
+    scene = replace(pressing(), omega2=lambda a: MEAN * (1.0 + slowest - np.cos(np.radians(a - slowest_at))))
+    peaks = ls.peaks(scene, ["omega2_mean", "F32_mean"])
+    assert float(peaks.omega2_mean) == pytest.approx(MEAN * np.sqrt(slowest * (2.0 + slowest)), rel=1e-7)
+    assert float(peaks.F32_mean) == pytest.approx(float(pressed(np.radians(slowest_at))), rel=1e-3)
+
+
+STANDING = {
+    "touches 0": lambda a: MEAN * (1.0 + np.cos(np.radians(a))),
+    "touches 0 elsewhere": lambda a: MEAN * (1.0 + np.cos(np.radians(a - 33.3))),
+    "touches 0 flatly": lambda a: MEAN * (1.0 + np.cos(np.radians(a))) ** 2,
+    "has larger rounding errors": lambda a: 100.0 + (1.0 + np.cos(np.radians(a - 33.3))) - 100.0,
+    "is 0 for long": lambda a: MEAN * np.maximum(np.cos(np.radians(a)), 0.0) ** 2,
+    "changes its sign": lambda a: MEAN * np.cos(np.radians(a)),
+}
+
+
+@pytest.mark.parametrize("speed", STANDING.values(), ids=STANDING)
+def test_a_crank_that_stands_still_at_an_angle_ends_no_cycle(speed):
+    peaks = ls.peaks(replace(PRESS, omega2=speed), ["F32_mean", "F32_rms", "omega2_mean", "T12_mean", "F32"])
+    means = peaks[["F32_mean", "F32_rms", "omega2_mean", "T12_mean"]]
+    assert all(np.isnan(mean) for mean in means.values()), means
+    assert float(peaks.F32_peak) > 0.0
+
+
+def test_samples_of_a_crank_that_stands_still_have_no_mean():
+    """At a sample, or between two of which one turns back."""
+    for speed, theta2 in (("touches 0", 360), ("changes its sign", 360), ("changes its sign", 359)):
+        scene = replace(PRESS, omega2=STANDING[speed])
+        peaks = ls.peaks(scene, ["omega2_mean", "F32_rms"], theta2=theta2)
+        assert np.isnan(peaks.omega2_mean) and np.isnan(peaks.F32_rms)
+        assert np.isnan(ls.compare(scene, scene, of=["F32_rms"], theta2=theta2).F32_rms).all()
+
+
+def test_designs_that_stand_still_leave_others_their_means():
+    """∫dθ/cos θ over ±60° is 2·ln(tan 75°): there a crank that stands still at 90° does not."""
+    angles = np.arange(0.0, 360.0, 10.0)
+    wave = xr.DataArray(np.cos(np.radians(angles)), {"theta2": angles}, "theta2")
+    peaks = ls.peaks(replace(PRESS, omega2=MEAN * (xr.DataArray([2.0, 1.0], dims="least") + wave)), ["F32_mean"])
+    alone = ls.peaks(replace(PRESS, omega2=MEAN * (2.0 + wave)), ["F32_mean"])
+    assert float(peaks.F32_mean[0]) == float(alone.F32_mean) and np.isnan(peaks.F32_mean[1])
+    scene = replace(PRESS, omega2=STANDING["changes its sign"])
+    mean = float(ls.peaks(scene, ["omega2_mean"], between=(-60.0, 60.0)).omega2_mean)
+    assert mean == pytest.approx(MEAN * np.pi / 3.0 / np.log(np.tan(np.radians(75.0))), rel=1e-12)
+    hours = ls.bearings(scene, {"B": ls.Bearing(capacity=30e3)}).L10h.sel(pin="B")
+    assert np.isinf(hours)
+
+
 def test_a_car_that_slows_down_at_the_top_spends_its_time_there():
     """v² = v0² − 2g·r(1 − cos θ): a lap takes 4r/v0·K(m), m = 4g·r/v0², a complete elliptic integral."""
     radius, speed, g = 30.0, 50.0, 9.81

@@ -6,6 +6,9 @@ not known (jammed, off the track) are left out of integrals, and their time out 
 with θ2 = middle + half·sin x, as in `linksweep.results.peak_search.arcs`.
 
     mean of q over time = ∫ q dt / ∫ dt,        dt = dθ2/|ω2|        (a car in a loop: dθ/|v|)
+
+A crank whose speed falls to 0 at an angle, as every smooth one does that changes sign, takes infinite time to pass it:
+it ends no cycle, and has no means.
 """
 
 from __future__ import annotations
@@ -37,11 +40,13 @@ DIVERGENCE = 1e5
 """Size of a piece, relative to the first estimate of the whole, from which on the integral diverges."""
 FIRST_DIVERGENCE = 12
 """Halvings after which divergence is checked: a load may have a narrow peak that the first estimate missed."""
-NOISE, FIRST_NOISE = 0.1, 8
-"""An integrand with more than this share of its pieces open after so many halvings is rounding noise alone, as is the
-shaking moment of a crank alone; in others only kinks, jumps and poles keep pieces open, one or two each."""
+MOST_OPEN, FIRST_NOISE = 25, 8
+"""An integrand with more open pieces than this, for each of its first ones, after so many halvings is rounding noise,
+as is the shaking moment of a crank alone; in others only kinks, jumps and poles keep pieces open, one or two each."""
 LAST_DIGIT = 2.0**-44
 """Spacing of floating-point numbers at an angle of 360 [degree]."""
+LAST_DIGITS_OF_SPEED = 2.0**-50
+"""Rounding error of a speed over the angle, relative to its largest value: of a few operations."""
 POLE = 1e-3
 """Difference of the rules, relative to a piece where all digits of the angle are spent, that shows a pole in it."""
 ROUNDING = 1e-13
@@ -92,8 +97,8 @@ class Integrand(NamedTuple):
 class Rules(NamedTuple):
     """Integrals (integrand, piece) by both rules: `outer` with 15 points, `inner` with 7.
 
-    `size` is the integral of the magnitude, `blur` the error that rounding of the angles causes: their last digit times
-    the total variation of the integrand.
+    `size` is the integral of the magnitude, `blur` the error that rounding causes: of the angles, their last digit
+    times the total variation of the integrand; of the rate of the angle, what its last digits change.
     """
 
     outer: Array
@@ -104,25 +109,33 @@ class Rules(NamedTuple):
 
 def means(scene: Any, powers: tuple[Power, ...], pace: tuple[str, ...], part: Part | None) -> dict[Power, Field]:
     """Return the mean over time of each power of a quantity, over the cycle or a part of it, for every design; NaN
-    where no angle is ok.
+    where no angle is ok, or where the crank stands still at one.
 
     `pace` names the quantity that is the rate of the crank angle, if it changes over the revolution.
     """
     weighted = {(power, True): Integrand((power[0], *pace), partial(_weighted, power[1])) for power in powers}
     times = {(power, False): Integrand((power[0], *pace), _time) for power in powers}
     totals = integrals(scene, weighted | times, part)
+    return {power: _ratio(totals[power, True], totals[power, False]) for power in powers}
+
+
+def _ratio(total: Field, time: Field) -> Field:
+    """Return means: totals over time by the time, NaN where that has no end."""
     with np.errstate(invalid="ignore", divide="ignore"):
-        mean = {power: totals[power, True].values / totals[power, False].values for power in powers}
-    return {power: Field(totals[power, True].dims, values) for power, values in mean.items()}
+        return Field(total.dims, total.values / np.where(np.isinf(time.values), np.nan, time.values))
 
 
 def _weighted(power: int, value: Array, pace: Array | float = 1.0) -> Array:
-    return np.where(np.isfinite(value / pace), value**power / np.abs(pace), 0.0)
+    return np.where(_known(value, pace), value**power / np.abs(pace), 0.0)
 
 
 def _time(value: Array, pace: Array | float = 1.0) -> Array:
     """Return the time for a small angle, per angle, where the value is known."""
-    return np.where(np.isfinite(value / pace), 1.0 / np.abs(pace), 0.0)
+    return np.where(_known(value, pace), 1.0 / np.abs(pace), 0.0)
+
+
+def _known(value: Array, pace: Array | float) -> Array:
+    return np.isfinite(value) & ~np.isnan(pace)
 
 
 def cycle_time(scene: Scene) -> xr.DataArray:
@@ -139,7 +152,7 @@ def integrals(scene: Any, integrands: Mapping[Key, Integrand], part: Part | None
 
     Where no angle of a design is ok, its integrals are NaN or 0.
     """
-    names = tuple(dict.fromkeys(name for integrand in integrands.values() for name in integrand.names))
+    names = _names(tuple(integrands.values()))
     totals = {key: empty_over_all(scene, integrand.names) for key, integrand in integrands.items()}
     # whole turns last: an integral that designs share, such as the time of a cycle, is that of a whole turn
     for kind, group in assembled_groups(scene, names, (PARTLY, EVERYWHERE)):
@@ -167,17 +180,17 @@ def _integrals(group: Group, integrands: tuple[Integrand, ...], paths: Paths) ->
     whichever others are computed with it.
     """
     count, pieces, scale = len(paths.x), _first_pieces(paths), None
-    first = np.bincount(pieces.path, minlength=count)
+    first, errors = np.bincount(pieces.path, minlength=count), _errors_of_pace(group, integrands, paths)
     total = np.zeros((len(integrands), count))
     pending = np.ones((len(integrands), len(pieces.path)), dtype=bool)
     for halvings in range(HALVINGS):
-        rules = _rules(group, integrands, paths, pieces)
+        rules = _rules(group, integrands, paths, pieces, errors)
         scale = np.maximum(_by_owner(rules.size, pieces.path, count), 1e-300) if scale is None else scale
         unsettled = pending & _disagree(rules, scale[:, pieces.path], beside_toggles=paths.middle is not None)
         if halvings >= FIRST_DIVERGENCE:
             unsettled = _without_divergent(rules, unsettled, scale, pieces.path)
         if halvings >= FIRST_NOISE:
-            noise = _by_owner(unsettled, pieces.path, count) > NOISE * first * 2.0**halvings
+            noise = _by_owner(unsettled, pieces.path, count) > MOST_OPEN * first
             unsettled &= ~noise[:, pieces.path]
         total += _by_owner(np.where(pending & ~unsettled, rules.outer, 0.0), pieces.path, count)
         halved = unsettled.any(axis=0)
@@ -227,19 +240,43 @@ def _first_pieces(paths: Paths) -> Pieces:
     return Pieces(path, paths.cuts[path, piece], paths.cuts[path, piece + 1])
 
 
-def _rules(group: Group, integrands: tuple[Integrand, ...], paths: Paths, pieces: Pieces) -> Rules:
-    """Integrate each piece by both rules."""
+def _errors_of_pace(group: Group, integrands: tuple[Integrand, ...], paths: Paths) -> dict[str, Array]:
+    """Return the rounding errors (path) of the rate of the angle, by its name, if an integrand depends on it."""
+    path = np.repeat(np.arange(len(paths.cuts)), paths.cuts.shape[1])
+    errors = {}
+    for name in {*_names(integrands)} & {group.scene.mechanism.pace}:
+        (values,) = group.values((name,), paths.row[path], paths.angles(path, paths.cuts.ravel()))
+        errors[name] = LAST_DIGITS_OF_SPEED * np.nan_to_num(np.abs(values)).reshape(paths.cuts.shape).max(axis=1)
+    return errors
+
+
+def _rules(
+    group: Group, integrands: tuple[Integrand, ...], paths: Paths, pieces: Pieces, errors: Mapping[str, Array]
+) -> Rules:
+    """Integrate each piece by both rules; `errors` (path) are those of some quantities, by name."""
     middle, half = 0.5 * (pieces.start + pieces.end), 0.5 * (pieces.end - pieces.start)
     x = (middle[:, None] + half[:, None] * POINTS).ravel()
     path = np.repeat(pieces.path, len(POINTS))
-    names = tuple(dict.fromkeys(name for integrand in integrands for name in integrand.names))
+    names = _names(integrands)
     values = dict(zip(names, group.values(names, paths.row[path], paths.angles(path, x)), strict=True))
-    with np.errstate(all="ignore"):  # a NaN has a height of 0
-        rows = [integrand.height(*(values[name] for name in integrand.names)) for integrand in integrands]
-    heights = np.stack(rows).reshape(len(rows), len(half), len(POINTS))
-    blur = LAST_DIGIT * np.abs(np.diff(heights, axis=-1)).sum(axis=-1)
-    samples = heights * paths.stretch(path, x).reshape(-1, len(POINTS)) * half[:, None]
-    # no matrix product: the order in which it sums, and so the last bit, depends on the number of pieces
-    weighted = samples * OUTER, samples * INNER, np.abs(samples) * OUTER
-    outer, inner, size = (products.sum(axis=-1) for products in weighted)
+    erring = values | {name: values[name] + error[path] for name, error in errors.items()}
+    stretch = paths.stretch(path, x).reshape(-1, len(POINTS)) * half[:, None]
+    with np.errstate(all="ignore"):  # a NaN has a height of 0, a pole one of inf
+        heights, moved = (_heights(integrands, each).reshape(-1, *stretch.shape) for each in (values, erring))
+        blur = LAST_DIGIT * np.abs(np.diff(heights, axis=-1)).sum(axis=-1)
+        blur += (np.abs(moved - heights) * stretch * OUTER).sum(axis=-1)
+        samples = heights * stretch
+        # no matrix product: the order in which it sums, and so the last bit, depends on the number of pieces
+        weighted = samples * OUTER, samples * INNER, np.abs(samples) * OUTER
+        outer, inner, size = (products.sum(axis=-1) for products in weighted)
     return Rules(outer, inner, size, blur)
+
+
+def _names(integrands: tuple[Integrand, ...]) -> tuple[str, ...]:
+    """Return the names of all quantities of integrands, each once."""
+    return tuple(dict.fromkeys(name for integrand in integrands for name in integrand.names))
+
+
+def _heights(integrands: tuple[Integrand, ...], values: Mapping[str, Array]) -> Array:
+    """Return the heights (integrand, sample) of integrands from values of their quantities."""
+    return np.stack([integrand.height(*(values[name] for name in integrand.names)) for integrand in integrands])
