@@ -80,8 +80,9 @@ def peaks(
     Relative error at most 1e-10 of a peak, 1e-5 degree of its angle, besides the rounding of the forces themselves.
 
     Samples that are dense where a machine comes near a toggle find every rise; between them the plan is evaluated until
-    nothing is left to gain. One-sided limits at jumps of friction and loads count, and so do the limits at the ends of
-    a revolution that toggles cut short; what grows there without bound has the peak inf.
+    nothing is left to gain. One-sided limits at jumps of friction and loads count, not what stands between them where
+    a slide turns round; so do the limits at the ends of a revolution that toggles cut short. What grows there without
+    bound has the peak inf.
 
     Springs and dampers are sampled more densely where their ends pass each other; functions of theta2 every 0.02
     degrees, or more densely where they change more quickly; arrays at least as densely as their angles. A narrower

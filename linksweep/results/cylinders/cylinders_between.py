@@ -12,7 +12,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from linksweep.base.degrees import signed_distance
 from linksweep.engine.run import Field
 from linksweep.results.cylinders.cylinder_sums import combined, sources_of
 from linksweep.results.cylinders.multi_cylinder import MultiCylinder
@@ -27,13 +26,20 @@ from linksweep.results.peak_search.along_paths import (
 from linksweep.results.peak_search.arcs import arc_ends
 from linksweep.results.peak_search.between import EVERYWHERE, NEVER
 from linksweep.results.peak_search.groups import Group, assembled_groups, empty, empty_over_all, groups
-from linksweep.results.peak_search.paths import ASIDE, Paths, about_approaches, distinct, jump_angles, neighbours, turns
+from linksweep.results.peak_search.paths import (
+    AT_JUMP,
+    Paths,
+    about_approaches,
+    distinct,
+    jump_angles,
+    moved_aside,
+    neighbours,
+    reversals,
+    turns,
+)
 from linksweep.results.peak_search.singular.poles import Candidates, may_have_poles, pole_candidates
 from linksweep.scene.pairs import Array, Places, in_period, joined
 from linksweep.scene.scene import Scene
-
-MERGED = 0.1 * ASIDE
-"""Distance within which samples of different cylinders are one sample [degree]."""
 
 
 class Cylinders(NamedTuple):
@@ -78,9 +84,7 @@ class Cylinders(NamedTuple):
         """Return angles with those at a jump moved to its nearer side: cylinders that jump together then all do."""
         for one, ahead in self.by_cylinder():
             for jump in jump_angles(one).T:
-                away = signed_distance(angles, jump[rows] - ahead)
-                beside = angles - away + np.copysign(MERGED, away)
-                angles = np.where(np.abs(away) < MERGED, beside, angles)
+                angles = moved_aside(angles, jump[rows] - ahead, self.machine.period)
         return angles
 
     def by_cylinder(self) -> Iterator[tuple[Group, float]]:
@@ -106,12 +110,17 @@ def _arc_ends(group: Cylinders) -> tuple[Array, ...]:
     return ()
 
 
+@reversals.register
+def _reversals(group: Cylinders) -> Array:
+    return np.empty((len(group.designs), 0))  # sums are beside all jumps of their cylinders in any case
+
+
 @turns.register
 def _turns(group: Cylinders) -> Paths:
     period = group.machine.period
     own = [(turns(one), ahead) for one, ahead in group.by_cylinder()]
     x, cuts = (
-        distinct(np.concatenate([in_period(numbers - ahead, period) for numbers, ahead in parts], axis=1), MERGED)
+        distinct(np.concatenate([in_period(numbers - ahead, period) for numbers, ahead in parts], axis=1), AT_JUMP)
         for parts in ([(p.x, ahead) for p, ahead in own], [(p.cuts[:, :-1], ahead) for p, ahead in own])
     )
     before, after = neighbours(x, period)

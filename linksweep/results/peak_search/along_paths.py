@@ -17,7 +17,7 @@ from linksweep.engine.peaks.paths import open_brackets, refine
 from linksweep.engine.peaks.summits import might_reach
 from linksweep.engine.run import Field
 from linksweep.results.peak_search.groups import Group
-from linksweep.results.peak_search.paths import QUARTER, Part, Paths
+from linksweep.results.peak_search.paths import QUARTER, Part, Paths, moved_aside, reversals
 from linksweep.results.peak_search.singular.poles import poles
 from linksweep.results.peak_search.singular.rounding_errors import CLEAR, Singular
 from linksweep.scene.pairs import Array, flat_index, in_period, some_of
@@ -199,13 +199,13 @@ def _search(group: Group, signals: tuple[str, ...], paths: Paths, current: Array
     """Return the highest of each signal on each path, without the limits at its ends."""
     count_of_paths = len(paths.x)
     samples = 1 + (np.diff(paths.x, axis=1) > 0.0).sum(axis=1)  # others repeat a place
-    lanes, count, best = _opened(group, signals, paths)
+    values_along = _values_along(group, signals, paths)
+    lanes, count, best = _opened(values_along, signals, paths)
 
     def values_at(tag: Array, x: Array) -> Array:
         path = tag // len(signals)
         samples[:] += np.bincount(path, minlength=count_of_paths)
-        values = group.values(signals, paths.row[path], paths.angles(path, x))
-        return values[tag % len(signals), np.arange(len(tag))]
+        return values_along(path, x)[tag % len(signals), np.arange(len(tag))]
 
     with np.errstate(all="ignore"):
         best[brackets.PEAK] = np.fmax(best[brackets.PEAK], current.ravel())
@@ -226,7 +226,8 @@ class Rises(NamedTuple):
 
 def rises(group: Group, signal: str, paths: Paths, level: Array) -> Rises:
     """Return all rises of a signal on paths that may reach the level of their path, each refined on its own."""
-    lanes, count, _ = _opened(group, (signal,), paths)
+    values_along = _values_along(group, (signal,), paths)
+    lanes, count, _ = _opened(values_along, (signal,), paths)
     count = _keep_promising(lanes, count, level, paths, 1)
     path = lanes[brackets.TAG, :count].astype(int)
     lanes[brackets.TAG, :count] = np.arange(count)
@@ -234,7 +235,7 @@ def rises(group: Group, signal: str, paths: Paths, level: Array) -> Rises:
     best[brackets.PEAK], best[brackets.PEAK_X] = lanes[brackets.FB, :count], lanes[brackets.XB, :count]
 
     def values_at(tag: Array, x: Array) -> Array:
-        return group.values((signal,), paths.row[path[tag]], paths.angles(path[tag], x))[0]
+        return values_along(path[tag], x)[0]
 
     with np.errstate(all="ignore"):
         refine(paths.x.size, lanes, count, best, values_at)
@@ -242,11 +243,26 @@ def rises(group: Group, signal: str, paths: Paths, level: Array) -> Rises:
     return Rises(path, angle, best[brackets.PEAK])
 
 
-def _opened(group: Group, signals: tuple[str, ...], paths: Paths) -> tuple[Array, int, Array]:
+def _values_along(group: Group, signals: tuple[str, ...], paths: Paths) -> Callable[[Array, Array], Array]:
+    """Return the function that evaluates signals at places x of paths, on either side of where slides turn round."""
+    turning = reversals(group)[paths.row]
+
+    def values_along(path: Array, x: Array) -> Array:
+        angles = paths.angles(path, x)
+        for angle in turning.T:
+            angles = moved_aside(angles, angle[path], group.scene.period)
+        return group.values(signals, paths.row[path], angles)
+
+    return values_along
+
+
+def _opened(
+    values_along: Callable[[Array, Array], Array], signals: tuple[str, ...], paths: Paths
+) -> tuple[Array, int, Array]:
     """Return the lanes about all samples that may lead to a peak, their number, and each signal's highest sample."""
     count_of_paths, per_path = paths.x.shape
     every = np.repeat(np.arange(count_of_paths), per_path)
-    values = group.values(signals, paths.row[every], paths.angles(every, paths.x.ravel()))
+    values = values_along(every, paths.x.ravel())
     rows = values.reshape(len(signals), count_of_paths, per_path).swapaxes(0, 1)
     most = count_of_paths * len(signals) * (per_path // 2 + 1)  # no two neighbours are summits
     lanes = np.zeros((brackets.BRACKET_ROWS, brackets.in_blocks(most)))

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from linksweep.base.degrees import OFF_ROUND
+from linksweep.base.degrees import OFF_ROUND, signed_distance
 from linksweep.engine.roots import roots
 from linksweep.results.peak_search.approaches import (
     NARROW_NEAR_TOGGLE,
@@ -38,6 +38,8 @@ ASIDE = 1e-9
 """Distance from a jump at which its one-sided limits are taken [degree]."""
 BESIDE = np.array([ASIDE, 1e-3, 0.01, 0.1, 0.3, 1.0, 2.0, 4.0, 7.0, 11.0, 16.0, 22.0, 30.0])
 """Distances from a break of the samples on either side, far enough to reach those of the fused search [degree]."""
+AT_JUMP = 0.1 * ASIDE
+"""Distance from a jump within which an angle is at it, or samples are one [degree]."""
 FARTHER_ASIDE = 1e-4, 0.01
 """Distances from a break of more samples, unless the crank drives at a steady speed [degree]: those closest by may
 consist of rounding errors, and the higher side of a jump hides a summit close to the lower one."""
@@ -197,6 +199,26 @@ def jump_angles(group: Group) -> Array:
     located += [jam + turn * k for jam in _jam_angles(group) for k in turns]
     jumps = np.concatenate([np.empty((designs, 0)), *(jump[:, None] for jump in angles), *located], axis=1)
     return distinct(np.concatenate([jumps, contact_angles(group, both_sides(jumps))], axis=1))
+
+
+@singledispatch
+def reversals(group: Any) -> Array:
+    """Return the angles (design, nth) [degree] of the whole period at which slides with friction turn round.
+
+    There alone a slide has no friction, though a load that jumps with it may be on: forces that neither side has.
+    """
+    scene, none = group.scene, np.empty((len(group.designs), 0))
+    if not scene.mechanism.rubs:
+        return none
+    turns = np.arange(0.0, scene.period, scene.mechanism.period)
+    known = [group.number(jump)[:, None] + turns for jump in scene.mechanism.jumps()]
+    return np.concatenate([none, *known, over_whole_period(group, group.zeros("jump"))], axis=1)
+
+
+def moved_aside(angles: Array, jump: Array, period: float) -> Array:
+    """Return angles [degree] with each that is at its jump moved to the nearer side."""
+    away = signed_distance(angles, jump, period)
+    return np.where(np.abs(away) < AT_JUMP, angles - away + np.copysign(AT_JUMP, away), angles)
 
 
 def _jam_angles(group: Group) -> list[Array]:

@@ -41,6 +41,40 @@ def test_a_one_sided_limit_is_the_peak(name):
     assert float(peaks.friction_force_min) == pytest.approx(min(float(near.min()), float(everywhere.min())), rel=1e-3)
 
 
+MU, A, B = 0.3, 0.043, 0.145
+
+
+def greatest_normal_force(offset, omega2, way):
+    """Largest |N| on a guide at y = e of a slider without mass, by statics, while 2000 N push it across, along y.
+
+    Where the slider moves by the sign s, the rod's force S at the angle β and the friction −μ·|N|·s give
+    S·cos β = μ·|N|·s and S·sin β + N + 2000 = 0, so that |N| = 2000/(1 − μ·s·tan β); at a dead centre alone it is 2000.
+    """
+    stretched, folded = np.arcsin(offset / (B + A)), np.pi + np.arcsin(offset / (B - A))
+    outwards = (folded, stretched + 2.0 * np.pi) if omega2 > 0.0 else (stretched, folded)
+    inwards = (stretched, folded) if omega2 > 0.0 else (folded, stretched + 2.0 * np.pi)
+    theta = np.linspace(*(inwards if way == "opening" else outwards), 20_001)  # the limits at both ends included
+    tangent = np.tan(np.arcsin((offset - A * np.sin(theta)) / B))
+    return np.max(2000.0 / (1.0 - MU * (-1.0 if way == "opening" else 1.0) * tangent))
+
+
+@pytest.mark.parametrize("offset", [0.02, 0.021, -0.013])
+@pytest.mark.parametrize("omega2", [30.0, -30.0])
+@pytest.mark.parametrize("way", ["opening", "closing"])
+def test_what_stands_between_the_limits_of_friction_and_a_load_is_no_peak(offset, omega2, way):
+    """At a dead centre the load is on, and friction, which eases it on one side, is not."""
+    expected = greatest_normal_force(offset, omega2, way)
+    crank, rod = ls.Link(A, 0.0, 0.0), ls.Link(B, 0.0, 0.0)
+    engine = ls.SliderCrank(crank, rod, 0.0, offset=offset, friction=MU)
+    guide = ls.Guide(through=(0.0, offset), friction=MU)
+    text, parts = "crank A-B, rod B-C, ram C on slide", {"crank": crank, "rod": rod, "ram": ls.Slider(0.0)}
+    linkage = ls.Linkage(text, ground={"A": (0.0, 0.0)}, guides={"slide": guide}, **parts)
+    for machine, slider, name in ((engine, "slider", "normal_force"), (linkage, "ram", "F14n")):
+        push = ls.Load(slider, force=(0.0, 2000.0), over=f"{slider}.position", while_=way)
+        peaks = ls.peaks(ls.Scene(machine, omega2=omega2, loads=[push]), of=[name])
+        assert float(peaks[f"{name}_peak"]) == pytest.approx(expected, rel=1e-8)
+
+
 def test_nothing_is_read_into_a_jump():
     """A peak is never more than the densest sampling shows."""
     for name in ("open", "crossed"):
@@ -115,6 +149,7 @@ def test_a_yoke_with_much_friction_has_its_peaks_beside_one_in_a_toggle():
         yoke=ls.Slider(2.0, slot_angle=slot, slot_friction=1.0),
     )
     scene = ls.Scene(machine, 5.0, gravity=(0.0, -9.81))
-    peaks, largest = ls.peaks(scene, of=["F12"]), ls.sweep(scene, 7200, of=["F12"]).F12.max("theta2")
+    off_reversals = np.arange(0.0, 360.0, 0.05) + 1e-6
+    peaks, largest = ls.peaks(scene, of=["F12"]), ls.sweep(scene, off_reversals, of=["F12"]).F12.max("theta2")
     assert peaks.status.values.tolist() == [2, 0]
     assert 0.0 <= (peaks.F12_peak / largest - 1.0)[1] < 1e-6
