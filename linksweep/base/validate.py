@@ -173,10 +173,6 @@ def _over_angle_only() -> str:
 
 
 def _array_problems(path: str, value: Any, rule: Rule) -> list[str]:
-    if value.dtype.kind not in "fiu":
-        return [f"{path} holds {value.dtype} values: each must be {rule.number}"]
-    if value.size == 0:
-        return [f"{path} is empty, {dict(value.sizes)}: give each dimension at least one value"]
     problems = []
     if "theta2" in value.dims:
         problem = f"{path} depends on theta2: it must be the same at every angle; {_over_angle_only()}"
@@ -185,14 +181,23 @@ def _array_problems(path: str, value: Any, rule: Rule) -> list[str]:
         problems.append(f'{path} has a dimension "branch": that name is kept for branch="both"; rename it')
     if len(set(value.dims)) < len(value.dims):
         return [*problems, f"{path} has dimensions {value.dims}: each name may appear once; rename one"]
-    if is_lazy(value):
-        return problems
-    broken = rule.broken_by(np.asarray(value.values, dtype=float))
-    if broken.any():
-        first = np.unravel_index(int(np.argmax(broken)), broken.shape)
-        worst = float(value.values[first])
-        problems.append(f"{path} = {rule.measured(worst)}{_place(value, first, broken)}: must be {rule.allowed(worst)}")
-    return problems
+    return [*problems, *value_problems(path, value, rule)]
+
+
+def value_problems(path: str, array: Any, rule: Rule) -> list[str]:
+    """Return the problems of the values of a DataArray, whatever its dims and labels; a lazy one's are not computed."""
+    if array.dtype.kind not in "fiu":
+        return [f"{path} holds {array.dtype} values: each must be {rule.number}"]
+    if array.size == 0:
+        return [f"{path} is empty, {dict(array.sizes)}: give each dimension at least one value"]
+    if is_lazy(array):
+        return []
+    broken = rule.broken_by(np.asarray(array.values, dtype=float))
+    if not broken.any():
+        return []
+    first = np.unravel_index(int(np.argmax(broken)), broken.shape)
+    worst = float(array.values[first])
+    return [f"{path} = {rule.measured(worst)}{_place(array, first, broken)}: must be {rule.allowed(worst)}"]
 
 
 def _place(array: Any, first: tuple, broken: np.ndarray) -> str:

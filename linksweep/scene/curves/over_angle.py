@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.base.frozen import cached_beside
-from linksweep.base.validate import Rule, is_quantity, number_problems, refuse
+from linksweep.base.validate import Rule, is_quantity, refuse, value_problems
 from linksweep.engine.run import Grid
 from linksweep.scene.curves.interpolation import CUBIC, RINGING, OvershootWarning, PeriodicCurve
 
@@ -130,7 +130,7 @@ def called(path: str, function: Any, rule: Rule, angles: np.ndarray) -> xr.DataA
             f"it must return {rule.number} for each angle"
         )
     sampled = _labelled(angles).copy(deep=False, data=np.broadcast_to(values, angles.shape))
-    refuse([f"{problem}; its function returned it" for problem in number_problems(path, sampled, rule)])
+    refuse([f"{problem}; its function returned it" for problem in value_problems(path, sampled, rule)])
     return sampled.astype(float)
 
 

@@ -232,6 +232,17 @@ def test_a_function_gets_its_own_copy_of_the_angles():
     assert crank_grid(8, 360.0).angles.tolist() == [0.0, 45.0, 90.0, 135.0, 180.0, 225.0, 270.0, 315.0]
 
 
+def test_a_function_is_evaluated_at_angles_that_repeat():
+    """A torque on the crank alone is what its drive feels: T12 = −T."""
+    light = ls.FourBar(*(ls.Link(length, 0.0, 0.0) for length in (0.08, 0.22, 0.18)), ground=0.2)
+    push = ls.Load("crank", torque=lambda theta2: 5.0 * np.sin(np.radians(theta2)))
+    scene = ls.Scene(light, omega2=lambda theta2: 20.0 + np.cos(np.radians(theta2)), loads=[push])
+    angles = np.array([90.0, 30.0, 90.0, 450.0])
+    torque = ls.sweep(scene, angles, of=["T12"]).T12
+    np.testing.assert_allclose(torque, -5.0 * np.sin(np.radians(angles)), rtol=1e-12)
+    assert ls.system(scene, [30.0, 30.0]).sizes["theta2"] == 2
+
+
 # ------------------------------------------------------------------------------------------- messages
 
 
