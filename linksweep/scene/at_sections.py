@@ -18,8 +18,8 @@ from linksweep.scene.scene import Scene
 
 COUNT = 41
 """Places along a link where none are stated: each 1/40 of the way between its ends."""
-BEYOND = 1e-9
-"""Share of the length by which a section lies beyond a force."""
+BESIDE = 1e-12
+"""Share of the length by which a section lies before or beyond a force: a thousand times what rounding moves it."""
 _NAME = re.compile(rf"(?:{'|'.join(FORCES)}|stress)(\d+)(?:_.*)?")
 
 
@@ -37,7 +37,7 @@ def places(shares: Any) -> xr.DataArray:
 
 
 def marks(scene: Scene, role: str) -> list[Number]:
-    """Return where forces act on a beam, each twice: its section forces before and after, as shares of its length."""
+    """Return sections on either side of each force on a beam, as shares of its length."""
     numbers, fields = scene.mechanism.beam_numbers(), scene.at_one_angle.inputs.fields
     start, end = (numbers[f"{role}_beam_{name}"] for name in ("start", "end"))
     pins = [0.0 * start, scene.mechanism.parts[role].length, *scene.mechanism.third_pins_along(role)]
@@ -46,7 +46,7 @@ def marks(scene: Scene, role: str) -> list[Number]:
         places_of = [at[0] for _, _, at, joined_to in form.applied(name, role) if not joined_to]
         along += [xr.DataArray(fields[s].values, dims=fields[s].dims) if isinstance(s, str) else s for s in places_of]
     shares = [(s - start) / (end - start) for s in along]
-    return [np.clip(share + beyond, 0.0, 1.0) for share in shares for beyond in (0.0, BEYOND)]
+    return [np.clip(share + aside, 0.0, 1.0) for share in shares for aside in (-BESIDE, BESIDE)]
 
 
 @cache

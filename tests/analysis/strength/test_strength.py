@@ -101,6 +101,27 @@ def test_a_slender_rod_buckles_by_euler_and_a_stocky_one_by_johnson():
         assert float(ds.buckling_safety.min()) == pytest.approx(float(ds.buckling_load.min()) / worst, rel=1e-9)
 
 
+@pytest.mark.parametrize(("angle", "ends"), [(180.0, (-0.03, 0.0)), (0.0, (0.02, 0.051))])
+def test_both_sides_of_an_eye_count_wherever_it_lies(angle, ends):
+    """σ = k F/A in a massless crank that two forces pull apart, of which only the outer end lies at an eye."""
+    lengths = xr.DataArray(np.arange(60, 92) / 1000.0, dims="design")
+    thread = {"width": 0.01, "thickness": 0.01, "density": 0.0}
+    machine = ls.Linkage(
+        "crank A-B-K, coupler B-C, rocker D-C",
+        ground={"A": (0.0, 0.0), "D": (0.2, 0.0)},
+        points={"K": (0.051, angle)},
+        crank=ls.Bar(lengths, width=0.02, thickness=0.01, density=0.0),
+        coupler=ls.Bar(0.4, **thread),
+        rocker=ls.Bar(0.4, **thread),
+    )
+    pull = [
+        ls.Load("crank", force=(way * 1000.0, 0.0), at=(abs(at), 180.0 * (at < 0.0)), frame="link")
+        for way, at in zip((-1.0, 1.0), ends, strict=True)
+    ]
+    ds = ls.strength(ls.Scene(machine, omega2=10.0, loads=pull), STEEL, links="crank", stress_concentration=3.0)
+    np.testing.assert_allclose(ds.stress, 3.0 * 1000.0 / (0.02 * 0.01), rtol=1e-12)
+
+
 def test_designs_are_independent_and_sections_may_lack_moments():
     press = ls.example("press")
     lengths = xr.DataArray([0.2, 0.22, 0.24], dims="design")
