@@ -140,7 +140,8 @@ class Chain:
         if not self.motion.plain:
             limited = limits(self.motion, rubbing, forces.coupled)
         drive, slider_pins = (own.name, own.unknown.name), {c.pair: (c.pin_x, c.pin_y) for c in forces.contacts}
-        straight = [Beam(self.topology, self.motion.bodies[role], loads, drive, slider_pins) for role in beams]
+        meshed, turning = self.motion.shape.meshed, self.motion.bodies
+        straight = [Beam(self.topology, meshed, turning[role], loads, drive, slider_pins) for role in beams]
         rows = [
             *self.motion.rows,
             *forces.rows,

@@ -71,10 +71,31 @@ def test_the_larger_stress_is_that_of_the_fibre_that_bears_more():
 def test_the_other_part_of_each_link_exerts_the_opposite(name):
     scene = beams(ls.example(name))
     assert scene.mechanism.beams
-    geared = scene.mechanism.topology.gears
     for role in scene.mechanism.beams:
-        if not geared or role not in ("crank", *geared):  # forces and torques of teeth are no quantities
-            compare(scene, role)
+        compare(scene, role)
+
+
+@pytest.mark.parametrize("gears", [{}, {"wheel": ls.Gears(pressure_angle=20.0)}])
+@pytest.mark.parametrize(("ratio", "wheel"), [("-2", "D-E-H"), ("-3/2", "E-D-H"), ("3", "D-E")])
+def test_gears_bear_on_the_pivots_of_crank_and_wheel(ratio, wheel, gears):
+    """Also where these lie between pins: nothing bends an overhang that bears no load."""
+    rod = {"width": 0.02, "thickness": 0.02, "density": 7850.0}
+    lengths = {"crank": 0.06, "coupler": 0.2, "rod": 0.2, "wheel": 0.05}
+    machine = ls.Linkage(
+        f"crank A-B-K, coupler B-C, rod C-E, wheel {wheel} : {ratio} crank",
+        ground={"A": (0.0, 0.0), "D": (0.2, 0.0)},
+        points={pin: (0.04, 180.0) for pin in "KH" if pin in f"K{wheel}"},
+        gears=gears,
+        **{role: ls.Bar(length, **rod) for role, length in lengths.items()},
+    )
+    loads = [ls.Load("rod", force=(10.0, -50.0), at=(0.1, 0.0))]
+    scene = ls.Scene(machine, omega2=20.0, gravity=(0.0, -9.81), loads=loads, section=SHARES)
+    for role in machine.beams:
+        compare(scene, role)
+    massless = replace(machine.crank, density=0.0)
+    without_mass = replace(scene, mechanism=replace(machine, crank=massless), section=0.3)
+    overhang = ls.sweep(without_mass, 24, of=["axial_force2", "shear_force2", "bending_moment2"])
+    assert max(float(abs(overhang[name]).max()) for name in overhang if name != "status") < 1e-12
 
 
 @pytest.mark.parametrize("angles", [(0.0, 180.0), (12.0, 160.0)])
@@ -220,10 +241,32 @@ def actions_on(scene, role, grid, count):
     if scene.drive == role:
         torque = machine.drives[role]
         yield (0.0, 0.0), (0.0, 0.0), ls.sweep(scene, count, of=[torque])[torque]
+    for wheel in joined.gears:
+        if role in ("crank", wheel):
+            yield from teeth_on(scene, role, wheel, count)
     line = line_of(scene, role, count)
     for load in scene.at(grid).loads:
         if load.link == role:
             yield from action_of(load, machine.parts[role], line)
+
+
+def teeth_on(scene, role, wheel, count):
+    """Yield what the gears of a wheel exert on a link about its pivot: the moment of their force at the pitch point,
+    or without a pressure angle a torque, whose power is that of the other with the opposite sign."""
+    machine, joined = scene.mechanism, scene.mechanism.topology
+    ratio, k, first = float(joined.gears[wheel]), joined.number(wheel), joined.links[role][0]
+    (wheel_pivot,) = {*joined.links[wheel]} & {*joined.ground}
+    pivot, way = ("A", 1.0) if role == "crank" else (wheel_pivot, -1.0)
+    place = from_pin(scene, pin_at(scene, pivot, count), first, count)
+    if wheel not in machine.gears or machine.gears[wheel].pressure_angle is None:
+        torque = ls.sweep(scene, count, of=[f"T{k}2"])[f"T{k}2"]
+        yield place, (0.0, 0.0), torque if role == "crank" else -torque / ratio
+        return
+    cycle = ls.sweep(scene, count, of=[f"F{k}2x", f"F{k}2y"])
+    fx, fy = way * cycle[f"F{k}2x"], way * cycle[f"F{k}2y"]
+    (dx, dy), share = pin_at(scene, wheel_pivot, count), ratio / (ratio - 1.0)  # the pitch point divides A→D so
+    x, y = from_pin(scene, (share * dx, share * dy), pivot, count)
+    yield place, (fx, fy), x * fy - y * fx
 
 
 def action_of(load, part, line):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from itertools import count
 from typing import NamedTuple
 
@@ -37,12 +37,13 @@ class Beam:
     def __init__(
         self,
         topology: Topology,
+        meshed: Collection[str],
         body: Body,
         loads: tuple[Form, ...],
         drive: tuple[str, str],
         slider_pins: Mapping[tuple[int, int], tuple[Source, Source]],
     ):
-        self.topology, self.body, self.loads = topology, body, loads
+        self.topology, self.meshed, self.body, self.loads = topology, meshed, body, loads
         (self.driven, self.unknown), self.slider_pins = drive, slider_pins
         self.pins = topology.links[body.role]
         self.k, self.length = body.number, f"{body.role}_length"
@@ -115,13 +116,14 @@ class Beam:
         yield from self._pin_forces()
         yield from self._slides()
         yield from self._cylinders()
+        yield from self._gears()
         for name, form in named(self.loads):
             for force, torque, at, other in form.applied(name, self.body.role):
                 if other:
                     at = self._place(self._joint_with(other))
                 yield Point(force, torque or 0.0, *at)
         if self.driven == self.body.role:
-            yield Point("", self.unknown, *self._place(self._joint_with(GROUND)))
+            yield Point("", self.unknown, *self._pivot)
 
     def _pin_forces(self) -> Iterator[Point]:
         for joint, (i, j) in self.topology.pins.items():
@@ -160,6 +162,18 @@ class Beam:
                     self.rows.append(Row(planar.along, xy(push), (signed, *xy(f"axis_{role}"))))
                     yield Point(push, 0.0, *self._place(pin), self._is_last(pin))
 
+    def _gears(self) -> Iterator[Point]:
+        """Yield the torque, and the force of the teeth, that gears pass on to the crank and to a wheel."""
+        for wheel, ratio in self.topology.gears.items():
+            number = self.topology.number(wheel)
+            torque = name_between("T", number, 2)
+            if self.k == number:
+                on_crank, torque = torque, f"beam{self.k}_{torque}"
+                self.rows.append(Row(planar.product, (torque,), (on_crank, -1.0 / float(ratio))))
+            if self.k in (2, number):
+                force = force_name(2 + number - self.k, self.k) if wheel in self.meshed else ""
+                yield Point(force, torque, *self._pivot)
+
     def _pushes(self, cylinder: str) -> bool:
         return cylinder in self.topology.struts or cylinder == self.driven
 
@@ -176,6 +190,10 @@ class Beam:
         if pin in self.pins[:2]:
             return (0.0, self.length)[self.pins.index(pin)], 0.0
         return f"{pin}_along", f"{pin}_across"
+
+    @property
+    def _pivot(self) -> tuple[Source, Source]:
+        return self._place(self._joint_with(GROUND))
 
     def _joint_with(self, other: str) -> str:
         """Return the pin at which another link, or the ground, is joined to this one; else its first pin."""

@@ -23,10 +23,7 @@ def beam_problem(topology: Topology, role: str, part: Any, across: dict[str, Num
     if not isinstance(part, Bar) and getattr(part, "section", None) is None:
         return "it has no cross-section: give it as ls.Bar(...), or as ls.Link(..., section=ls.Section(...))"
     off = [pin for pin in topology.links[role] if pin in across and (is_lazy(across[pin]) or np.any(across[pin]))]
-    if off:
-        return f"its pin {off[0]} is off its line of pins"
-    wheel = role in topology.gears and topology.links[role][0] not in topology.ground
-    return "it is a wheel whose first pin is not its pivot: name that first" if wheel else ""
+    return f"its pin {off[0]} is off its line of pins" if off else ""
 
 
 def beam_numbers(role: str, link: Link | Bar) -> dict[str, Number]:
