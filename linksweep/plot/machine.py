@@ -60,8 +60,8 @@ def mechanism(
     -------
     matplotlib Axes
         Axes with equal scales. The arrow of a load ends where the force acts, that of gas at its piston; an arc with
-        an arrowhead is a torque, a zigzag a spring, a pot a damper. Circles in black and white quarters are the
-        centres of gravity of links that have a mass.
+        an arrowhead about its point is a torque, a zigzag a spring, a pot a damper. Circles in black and white quarters
+        are the centres of gravity of links that have a mass.
 
     Raises
     ------

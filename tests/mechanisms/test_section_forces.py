@@ -173,7 +173,7 @@ def test_loads_act_where_they_stand():
     loads = [
         ls.Load("coupler", force=(30.0, -80.0), at=(0.10, 15.0), torque=3.0),
         ls.Load("coupler", force=(10.0, 5.0), at=(0.05, 180.0), frame="link"),
-        ls.Load("rocker", torque=-12.0),
+        ls.Load("rocker", torque=-12.0, at=(0.15, 20.0)),
         ls.Load("crank", force=(3.0, 4.0), at=(0.02, 0.0), origin="cg"),
     ]
     scene = ls.Scene(machine, omega2=25.0, alpha2=40.0, gravity=(1.0, -9.81), loads=loads, section=SHARES)
@@ -280,7 +280,7 @@ def action_of(load, part, line):
     fx, fy = load.force or (0.0, 0.0)
     if load.frame == "link":
         fx, fy = fx * cos - fy * sin, fx * sin + fy * cos
-    place = (x * cos - y * sin, x * sin + y * cos) if load.force else (0.0, 0.0)
+    place = (x * cos - y * sin, x * sin + y * cos)
     yield place, (fx, fy), 0.0 if load.torque is None else load.torque
 
 

@@ -92,6 +92,12 @@ def test_an_arc_about_a_ground_pin_turns_as_its_torque(torque):
     assert f"load 1: {torque:.2f} N m".replace("-", "−") in texts(ax)
 
 
+def test_an_arc_stands_about_the_point_where_its_torque_acts():
+    b, _, along, _ = places()
+    ax = plot.mechanism(press(ls.Load("coupler", torque=5.0, at=(0.10, 15.0))), THETA2)
+    np.testing.assert_allclose(drawn(ax, "_torque"), [b + 0.10 * along * turned(15.0)], rtol=1e-12)
+
+
 def test_springs_and_dampers_run_from_end_to_end():
     b, _, along, rocker = places()
     loads = [

@@ -1,4 +1,4 @@
-"""Loads as they are drawn: forces at their points, gas on its piston, torques about a pin, springs and dampers."""
+"""Loads as they are drawn: forces and torques at their points, gas on its piston, springs and dampers."""
 
 from __future__ import annotations
 
@@ -109,11 +109,11 @@ class _Loads(NamedTuple):
 
     def _on_link(self, name: str, kind: str, form: LoadForm) -> Iterator[LoadSymbol]:
         number = self._number(form.link)
+        place = self._point(number, self._value(f"{name}_at_x"), self._value(f"{name}_at_y"))
         if form.force:
-            place = self._point(number, self._value(f"{name}_at_x"), self._value(f"{name}_at_y"))
             yield LoadSymbol(_words(name), kind, (number,), place, force=self._force(name, number, form.link_axes))
         if form.torque:
-            yield LoadSymbol(_words(name), "torque", (), self._pivot(number), torque=self._value(f"{name}_torque"))
+            yield LoadSymbol(_words(name), "torque", (number,), place, torque=self._value(f"{name}_torque"))
 
     def _force(self, name: str, number: int, link_axes: bool) -> np.ndarray:
         if not link_axes:
@@ -131,11 +131,6 @@ class _Loads(NamedTuple):
 
     def _point(self, number: int, x: np.ndarray, y: np.ndarray) -> np.ndarray:
         return point_of(self.scene, self.drawing, self.motion, self.places, number, x[:1], y[:1])
-
-    def _pivot(self, number: int) -> np.ndarray:
-        """Return the place of a link's ground pin, or else of its first pin."""
-        pins, still = self.drawing.pins_of(number), self.drawing.fixed(self.scene.mechanism)
-        return self.places[next((pin for pin in pins if pin in still), pins[0])]
 
     def _joint(self, first: str, second: str) -> np.ndarray:
         """Return the place of the pin that joins two links, or else of the first pin of one that moves."""

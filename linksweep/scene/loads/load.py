@@ -12,7 +12,7 @@ from linksweep.base.fields import POLAR_POINT, PairField, choice, field_problems
 from linksweep.base.frozen import with_sound
 from linksweep.base.units import unit_problems
 from linksweep.base.validate import Number, Rule, choice_problems, quote
-from linksweep.chains.rows.bodies import Body, Source
+from linksweep.chains.rows.bodies import Body
 from linksweep.chains.rows.load_forms import Acting, Applied, Form
 from linksweep.engine.quantity import Row, Total
 from linksweep.mechanisms import Mechanism
@@ -44,7 +44,8 @@ class Load(ChangingLoad):
     force : pair of float, DataArray or function, default None
         (Fx, Fy) [N]; None for no force. On a slider also one number, along its guide (frame "link").
     at : pair of float or DataArray, default (0.0, 0.0)
-        Point of action in the link's own polar coordinates: distance [m], angle from its line of pins [degree].
+        Point of action of force and torque in the link's own polar coordinates: distance [m], angle from its line of
+        pins [degree]. That of a torque matters for section forces alone.
     frame : str, default "ground"
         Axes of the force: "ground", or "link" (x along the link's line of pins).
     torque : float, DataArray or function, default None
@@ -235,13 +236,12 @@ class Load(ChangingLoad):
         if self.force is not None:
             component = f"{load}_force_" if self.frame == "link" else f"{load}_F"
             named |= {component + "x": self.force[0], component + "y": self.force[1]}
-            cos, sin = cos_sin(self.at[1])
-            cg = machine[f"{self.link}_cg_x"], machine[f"{self.link}_cg_y"]
-            from_x, from_y = cg if self.origin == "cg" else (0.0, 0.0)
-            named |= {f"{load}_at_x": from_x + self.at[0] * cos, f"{load}_at_y": from_y + self.at[0] * sin}
         if self.torque is not None:
             named[f"{load}_torque"] = self.torque
-        return named
+        cos, sin = cos_sin(self.at[1])
+        cg = machine[f"{self.link}_cg_x"], machine[f"{self.link}_cg_y"]
+        from_x, from_y = cg if self.origin == "cg" else (0.0, 0.0)
+        return named | {f"{load}_at_x": from_x + self.at[0] * cos, f"{load}_at_y": from_y + self.at[0] * sin}
 
 
 @dataclass(frozen=True)
@@ -272,7 +272,7 @@ class LoadForm(Form):
     def applied(self, name: str, link: str) -> tuple[Applied, ...]:
         if link != self.link:
             return ()
-        at: tuple[Source, Source] = (f"{name}_at_x", f"{name}_at_y") if self.force else (0.0, 0.0)
+        at = f"{name}_at_x", f"{name}_at_y"
         return (Applied(f"{name}_F" if self.force else "", f"{name}_torque" if self.torque else "", at),)
 
     def powers(self, name: str) -> tuple[str, ...]:
