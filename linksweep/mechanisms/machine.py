@@ -96,6 +96,12 @@ class Machine(Mechanism):
     def third_pins_along(self, role: str) -> list[Number]:
         return [distance * cos_sin(angle)[0] for distance, angle in self._third_pins(role).values()]
 
+    def pin_place(self, role: str, pin: str) -> tuple[Number, Number]:
+        first, *others = self.topology.pins_of(role)
+        if pin == first:
+            return 0.0, 0.0
+        return (self.parts[role].length, 0.0) if pin == others[0] else self._third_pins(role)[pin]
+
     def _third_pins(self, role: str) -> dict[str, Any]:
         """Return the third pins of a link in its polar coordinates."""
         pins = self.topology.links.get(role, ())[2:]

@@ -219,6 +219,10 @@ class Mechanism(ByContent, ABC):
         """Return the distances of a link's third pins from its first, along its line of pins [m]."""
         return []
 
+    def pin_place(self, role: str, pin: str) -> tuple[Number, Number]:
+        """Return a pin of a link in the link's own polar coordinates, distance [m] and angle [degree]."""
+        raise NotImplementedError
+
     def balancing_moments(self, fraction: Number) -> dict[str, Any]:
         """Return the first moments mx + i·my [kg m] that links lack for balance, by role; {} where not known.
 

@@ -82,6 +82,55 @@ def test_zero_friction_changes_no_bit():
         np.testing.assert_array_equal(cycle[name], without[name])
 
 
+def test_friction_in_its_pins_bends_a_massless_rod():
+    """Each end bears the moment of its own pin, and between them the bending moment changes evenly; the stress is the
+    largest of N/A + M/W at the ends."""
+    crank, rod = (ls.Bar(size, width=0.02, thickness=0.01, density=0.0) for size in (0.05, 0.2))
+    machine = ls.SliderCrank(crank, rod, slider_mass=2.0)
+    scene = ls.Scene(machine, omega2=20.0, section=xr.DataArray([0.0, 0.3, 1.0], dims="section"))
+    scene = replace(scene, loads=[ls.Load("slider", force=(-1000.0, 300.0), frame="ground")])
+    pins = {"B": ls.Bearing(diameter=0.03, friction=0.1), "C": ls.Bearing(diameter=0.02, friction=0.2)}
+    cycle = ls.pin_friction(scene, pins, theta2=720, of=["bending_moment2", "bending_moment3", "axial_force3"])
+    at_b, at_c = (cycle.friction_torque.sel(pin=pin) for pin in pins)  # of link 3 on link 2, of link 4 on link 3
+    size = float(abs(cycle.friction_torque).max())
+    expected = (1.0 - scene.section) * at_b + scene.section * at_c
+    assert float(abs(cycle.bending_moment3 - expected).max()) < 1e-11 * size
+    assert float(abs(cycle.bending_moment2.isel(section=2) - at_b).max()) < 1e-11 * size
+    stress = abs(cycle.axial_force3) / (0.02 * 0.01) + 6.0 * abs(expected) / (0.01 * 0.02**2)
+    worst = ls.strength(cycle.linksweep.scene, ls.material("S235"), links="rod").stress.item()
+    assert worst == pytest.approx(float(stress.max()), rel=1e-3)
+
+
+@pytest.mark.parametrize("angle", [0.0, 180.0])
+def test_friction_acts_at_each_of_three_pins(angle):
+    """The bending moment jumps there by the moment of friction, also where the first pin lies between two others."""
+    lengths = {"crank": 0.05, "coupler": 0.22, "rocker": 0.17, "rod": 0.25}
+    machine = ls.Linkage(
+        "crank A-B, coupler B-C, rocker D-C-E, rod E-F, ram F on slide",
+        ground={"A": (0.0, 0.0), "D": (0.2, 0.0)},
+        points={"E": (0.06, angle)},
+        guides={"slide": ls.Guide(through=(0.2, -0.15), angle=0.0)},
+        **{role: ls.Bar(length, width=0.02, thickness=0.02, density=7850.0) for role, length in lengths.items()},
+        ram=ls.Slider(mass=1.0),
+    )
+    inner, ends, start = ("D", "CE", -0.06) if angle else ("E", "CD", 0.0)
+    share = ((0.0 if angle else 0.06) - start) / (0.17 - start)
+    sections = xr.DataArray([0.0, share - 1e-9, share + 1e-9, 1.0], dims="section")
+    scene = ls.Scene(machine, omega2=20.0, section=sections, loads=[ls.Load("ram", force=-200.0)])
+    pins = dict.fromkeys("CDE", ls.Bearing(diameter=0.02, friction=0.2))
+    cycle = ls.pin_friction(scene, pins, theta2=24, of=["bending_moment4"])
+    sign = {"C": -1.0, "D": 1.0, "E": 1.0}  # of the force of each pin on the rocker: F43, F14, F54
+    on_rocker = {pin: sign[pin] * cycle.friction_torque.sel(pin=pin) for pin in pins}
+    first, before, after, last = cycle.bending_moment4.transpose("section", ...)
+    for got, expected in (
+        (first, -on_rocker[ends[1]]),
+        (before - after, on_rocker[inner]),
+        (last, on_rocker[ends[0]]),
+    ):
+        assert float(abs(expected).max()) > 0.1
+        np.testing.assert_allclose(got, expected, atol=1e-6)
+
+
 def test_designs_are_batched():
     friction = xr.DataArray([0.05, 0.1], dims="oil")
     several = ls.pin_friction(PRESS, {"C": ls.Bearing(diameter=0.02, friction=friction)}, theta2=36)

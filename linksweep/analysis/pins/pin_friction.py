@@ -76,7 +76,8 @@ def pin_friction(
     Returns
     -------
     Dataset
-        Cycle as from `linksweep.sweep`; its scene has the moments of friction as loads. Besides:
+        Cycle as from `linksweep.sweep`; its scene has the moments of friction as loads, each at
+        its pin. Besides:
 
         - `friction_torque` (…, pin, theta2) [N m]: moment of link i on link j of the pin's force Fij
         - `friction_loss` (…, pin, theta2) [W], never negative
@@ -156,15 +157,17 @@ def _converged(
 
 
 def _as_loads(scene: Scene, pins: Mapping[str, RubbingPin], torques: Arrays, theta2: int) -> list[Load]:
-    """Return the moments of friction as torques on the moving links."""
-    angles = xr.Variable("theta2", np.arange(theta2) * (scene.period / theta2))
+    """Return the moments of friction as torques on the moving links, each at its pin."""
+    angles, machine = xr.Variable("theta2", np.arange(theta2) * (scene.period / theta2)), scene.mechanism
     loads = []
-    for body in scene.mechanism.bodies:
-        acting = [torques[pin] for pin, rub in pins.items() if rub.j == body.number]
-        acting += [-torques[pin] for pin, rub in pins.items() if rub.i == body.number]
-        if acting:
-            total = sum(acting[1:], acting[0]).broadcast_like(xr.DataArray(angles, {"theta2": angles}))
-            loads.append(Load(body.role, torque=_bare(total)))
+    for pin, rub in pins.items():
+        on_j = torques[pin].broadcast_like(xr.DataArray(angles, {"theta2": angles}))
+        for number, torque in ((rub.j, on_j), (rub.i, -on_j)):
+            if number > 1:
+                role = machine.roles[number - 2]
+                at = machine.pin_place(role, pin.partition(":")[0])
+                # a moment jumps where its pin turns back: a spline would ring there
+                loads.append(Load(role, torque=_bare(torque), at=at, interpolation="pchip"))
     return loads
 
 
