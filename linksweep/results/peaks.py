@@ -77,7 +77,8 @@ def peaks(
 
     Notes
     -----
-    Relative error at most 1e-10 of a peak, 1e-5 degree of its angle, besides the rounding of the forces themselves.
+    Relative error at most 1e-10 of a peak, 1e-5 degree of its angle, besides the rounding of the forces themselves. The
+    angle of a limit at a jump lies on its side: a sweep at the angle of a peak has the peak's value.
 
     Samples that are dense where a machine comes near a toggle find every rise; between them the plan is evaluated until
     nothing is left to gain. One-sided limits at jumps of friction and loads count, not what stands between them where

@@ -37,7 +37,7 @@ from linksweep.results.peak_search.friction.jams import may_jam
 from linksweep.results.peak_search.friction.motion import of_free_angles
 from linksweep.results.peak_search.groups import Group, all_at_once, different, empty
 from linksweep.results.peak_search.limits import assembly_of
-from linksweep.results.peak_search.paths import Part
+from linksweep.results.peak_search.paths import ASIDE, Part
 from linksweep.results.peak_search.quadrature import Power, means
 from linksweep.results.peak_search.singular.poles import with_dead_centres
 from linksweep.scene.at_sections import with_sections
@@ -111,7 +111,8 @@ def _at_ends(variables: Mapping[str, xr.Variable], part: Part) -> dict[str, xr.V
     flagged = {}
     for name, angle in variables.items():
         if name.endswith("_at"):
-            at = np.select([np.isnan(angle.values), *(angle.values == end for end in part)], [3, 1, 2])
+            near = (np.abs(angle.values - end) < 2.0 * ASIDE for end in part)  # a limit there is just inside
+            at = np.select([np.isnan(angle.values), *near], [3, 1, 2])
             words = flags(f"end of the part, if any, that is the {angle.attrs['long_name']}", AT_END)
             flagged[f"{name}_end"] = plain(Field(tuple(map(str, angle.dims)), at.astype(np.int8)), words)
     return flagged

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from drawn import closed_figures, line, plt, texts  # noqa: F401
+from scipy.optimize import brentq
 
 import linksweep as ls
 from linksweep.analysis.pins import speed_limit
@@ -159,6 +160,41 @@ def test_the_limit_is_independent_of_the_initial_grid(monkeypatch):
     coarse = ls.speed_limit(SMOOTH[0], "F43", below=300.0)
     np.testing.assert_allclose(coarse.omega2_limit, fine.omega2_limit, rtol=1e-10)
     np.testing.assert_allclose(coarse.omega2_limit_at, fine.omega2_limit_at, atol=1e-4)
+
+
+ENDS = 30.1, 30.4
+"""Angles [degree] at which a push begins and ends, between two samples of a grid."""
+PUSHED = replace(
+    ls.example("press"),
+    loads=[
+        ls.Load(
+            "coupler",
+            force=(0.0, xr.DataArray([0.0, -2000.0, 0.0], {"theta2": [0.0, *ENDS]}, "theta2")),
+            at=(0.1, 0.0),
+            interpolation="step",
+        )
+    ],
+)
+
+
+@pytest.mark.parametrize("of", ["F32", "F43"])
+def test_the_limit_holds_on_either_side_of_a_jump(of):
+    """The largest force while the push acts is that of samples from its begin to just before its end."""
+    angles = np.linspace(ENDS[0] + 1e-9, ENDS[1] - 1e-9, 31)
+
+    def largest(speed):
+        return float(ls.sweep(replace(PUSHED, omega2=speed), angles, of=[of])[of].max())
+
+    below = 1.2 * largest(0.0)
+    expected = brentq(lambda speed: largest(speed) - below, 1.0, 200.0)
+    assert float(ls.speed_limit(PUSHED, of, below=below).omega2_limit) == pytest.approx(expected, rel=1e-8)
+
+
+def test_contributions_to_a_peak_before_a_jump_add_up_to_it():
+    peaks = ls.peaks(PUSHED, of=["F12", "F32", "F43"])
+    for name in ("F12", "F32", "F43"):
+        shares = ls.breakdown(PUSHED, name, theta2=[float(peaks[f"{name}_peak_at"])])[name]
+        assert float(shares.sum()) == pytest.approx(float(peaks[f"{name}_peak"]), rel=1e-8)
 
 
 def test_a_study_has_a_limit_for_each_design():

@@ -169,3 +169,18 @@ def test_the_largest_moment_is_marked_between_the_sections(loads):
     (marked,) = line(ax, "_worst").get_ydata()
     np.testing.assert_allclose(abs(marked), largest, rtol=2e-4 if loads else 1e-6)
     assert f"{abs(marked):.4g} N m" in ax.get_title("right")
+
+
+def test_the_largest_moment_before_a_jump_is_that_of_the_load_by_hand():
+    """A coupler without mass is a beam on two supports: F·a·b/L across it, largest just before the load ends."""
+    thread = {"width": 1e-3, "thickness": 1e-3, "density": 0.0}
+    links = (ls.Bar(length, **thread) for length in (0.1, 0.25, 0.2))
+    push = xr.DataArray([0.0, -2000.0, 0.0], {"theta2": [0.0, 30.0, 60.0]}, "theta2")
+    load = ls.Load("coupler", force=(0.0, push), at=(0.1, 0.0), interpolation="step")
+    scene = ls.Scene(ls.FourBar(*links, ground=0.22), omega2=1.0, loads=[load])
+    across = np.cos(np.radians(ls.sweep(scene, np.linspace(30.0, 60.0, 301), of=["theta3"]).theta3))
+    assert int(abs(across).argmax("theta2")) == 300  # else the moment would not be largest before the jump
+    expected = 2000.0 * float(abs(across).max()) * 0.1 * 0.15 / 0.25
+    ax = ls.plot.moment_diagram(scene, "coupler")
+    (marked,) = line(ax, "_worst").get_ydata()
+    assert abs(marked) == pytest.approx(expected, rel=1e-6)

@@ -30,6 +30,7 @@ from linksweep.engine.quantity import opposite_of
 from linksweep.engine.run import Field
 from linksweep.engine.trace.derivatives import derivative_of
 from linksweep.results.derivatives.samples import Pairs, pairs_over
+from linksweep.results.peak_search.along_paths import on_own_side
 from linksweep.results.peak_search.rises import at_arc_ends, equal_rises
 from linksweep.scene.derivatives.differentiated import ANGLE, differentiated
 from linksweep.scene.derivatives.sloped import Sloped, slopes_of, value_of
@@ -48,7 +49,7 @@ MOST = 1e-5
 SETTLED = 1e-9
 """Step of the last secant [rad] below which a peak counts as smooth."""
 BESIDE = 1e-6
-"""Distance from a jump [degree] at which one-sided derivatives are taken."""
+"""Distance within which angles are the same [degree]."""
 SAME = 1e-8
 """Difference of a peak and its polished one, relative to it, beyond which they are not the same."""
 APART = 1e-3
@@ -110,7 +111,8 @@ def rise_derivatives(
     held, jumps, moves = _at_jumps(pairs, angles, to)
     (polished_heights,) = pairs.at((name,), polished)
     smooth &= ~jumps & (np.abs(polished_heights - heights) <= SAME * np.abs(heights))  # not in the middle of a jump
-    place = np.where(smooth, polished, _side(pairs, name, angles, heights))
+    sides = on_own_side(lambda _, places: pairs.at((name,), places)[0], angles, heights, pairs.scene.period)
+    place = np.where(smooth, polished, sides)
     values = pairs.at(tuple(derivative_of(name, path) for path in (*to, ANGLE)), place)
     slopes, steep = values[:-1], values[-1]
     with np.errstate(invalid="ignore"):
@@ -170,14 +172,6 @@ def _over(pairs: Pairs, number: Any) -> Array:
 
 def _near(angles: Array, place: Any, period: float) -> Array:
     return np.abs(signed_distance(angles, place, period)) < 10.0 * BESIDE
-
-
-def _side(pairs: Pairs, name: str, angles: Array, peak: Array) -> Array:
-    """Return these angles, or those just beside them on the side where a quantity has its peak."""
-    places = np.stack([angles, angles - BESIDE, angles + BESIDE])
-    values = np.stack([pairs.at((name,), some)[0] for some in places])
-    away = np.nan_to_num(np.abs(values - peak), nan=np.inf)
-    return np.take_along_axis(places, np.argmin(away, axis=0)[None], axis=0)[0]
 
 
 def size_of(number: Any, kind: str) -> Any:

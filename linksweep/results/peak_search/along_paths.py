@@ -17,7 +17,7 @@ from linksweep.engine.peaks.paths import open_brackets, refine
 from linksweep.engine.peaks.summits import might_reach
 from linksweep.engine.run import Field
 from linksweep.results.peak_search.groups import Group
-from linksweep.results.peak_search.paths import QUARTER, Part, Paths, moved_aside, reversals
+from linksweep.results.peak_search.paths import ASIDE, QUARTER, Part, Paths, moved_aside, reversals
 from linksweep.results.peak_search.singular.poles import poles
 from linksweep.results.peak_search.singular.rounding_errors import CLEAR, Singular
 from linksweep.scene.pairs import Array, flat_index, in_period, some_of
@@ -38,6 +38,8 @@ TERMS = np.cos(np.outer(ANGLES, np.arange(NODES))) * np.append(1.0, np.full(NODE
 """Chebyshev's angles of samples, and the terms of the polynomial through values there, at the angle 0."""
 PROBE, LEAST_PROBE = 0.025, 1e-5
 """Distance from the end, as part of a step and at least, of the sample that shows whether a signal is unbounded."""
+ATTAINED = 1e-9
+"""Difference of a peak and the value at its angle, relative to the peak, beyond which it is a limit at a jump."""
 NEAR_PERIOD = 5e-6
 """Distance from the end of a period within which a peak counts as at its start [degree]: half of what its angle may err
 by."""
@@ -91,6 +93,22 @@ def start_near_period(angle: Array, period: float) -> Array:
     if np.count_nonzero(near):  # faster than `any`
         angle[near] = 0.0
     return angle
+
+
+def on_own_side(
+    values_at: Callable[[Array, Array], Array], angle: Array, height: Array, period: float, first: float = 0.0
+) -> Array:
+    """Return the angles [degree] of peaks; of a limit at a jump the angle just beside it, where the quantity has this
+    value, in the period that begins at `first`."""
+    rows, known = np.arange(len(angle)), np.nan_to_num(angle)
+    places = [known, *(first + in_period(known + side - first, period) for side in (-ASIDE, ASIDE))]
+    with np.errstate(invalid="ignore"):  # of peaks that are infinite, or are none
+        missed = np.abs(values_at(rows, known) - height) > ATTAINED * np.abs(height)
+        if not missed.any():
+            return angle
+        away = np.stack([np.abs(values_at(rows, place) - height) for place in places])
+    nearest = np.nan_to_num(away, nan=np.inf).argmin(axis=0)
+    return np.where(missed, np.choose(nearest, places), angle)
 
 
 def put(peak: SignalPeak, group: Any, numbers: tuple[Array, ...]) -> None:

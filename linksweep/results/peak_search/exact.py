@@ -34,6 +34,8 @@ from linksweep.results.peak_search.along_paths import (
     angle_in_period,
     follow,
     nothing,
+    numbers_of,
+    on_own_side,
     put,
     raise_to_poles,
     start_near_period,
@@ -43,7 +45,7 @@ from linksweep.results.peak_search.approaches import with_narrow_approaches
 from linksweep.results.peak_search.arcs import about_approaches_on_arcs, arc_ends, arcs, arcs_within
 from linksweep.results.peak_search.between import EVERYWHERE, ONE, PARTLY, driven_elsewhere
 from linksweep.results.peak_search.friction.directions import divides, with_known_directions
-from linksweep.results.peak_search.groups import all_at_once, assembled_groups, different, empty, groups
+from linksweep.results.peak_search.groups import Group, all_at_once, assembled_groups, different, empty, groups
 from linksweep.results.peak_search.on_arcs import follow_arcs
 from linksweep.results.peak_search.paths import ASIDE, Part, about_approaches, about_breaks, turns
 from linksweep.results.peak_search.pieces import AT_ONCE, follow_pieces, known_on_pieces, rubbing_signals
@@ -75,7 +77,7 @@ def peaks_within(
     scene: Scene, signals: tuple[str, ...], part: Part, designs: Array | None = None
 ) -> dict[str, SignalPeak]:
     """Return the peak of each signal between two angles [degree], ends included, of all designs or of these; angles of
-    peaks lie between them, and are equal to an end where the peak stands there."""
+    peaks lie between them, and are equal to an end where the peak stands there, but for limits at a jump."""
     peaks = _by_paths(scene, signals, (partial(arcs_within, part),), designs)
     _raise_to_poles(scene, peaks, part, designs)
     middle, half = 0.5 * (part[0] + part[1]), 0.5 * (part[1] - part[0])
@@ -83,6 +85,8 @@ def peaks_within(
         from_middle = signed_distance(angle.values, middle, scene.period)
         ends = [from_middle < ASIDE - half, from_middle > half - ASIDE]
         angle.values[...] = np.select(ends, part, middle + from_middle)
+    for group in groups(scene, signals, designs):
+        _on_own_sides(group, peaks, part[0])
     return peaks
 
 
@@ -142,6 +146,7 @@ def _follow_all(
     all that differ."""
     for kind, group in assembled_groups(scene, tuple(peaks), designs=designs) if peaks else ():
         follow(group, peaks, paths or paths_of(scene, kind))
+        _on_own_sides(group, peaks)
 
 
 def _fused_first(scene: Scene, signals: tuple[str, ...], assembly: Field) -> dict[str, SignalPeak]:
@@ -183,6 +188,16 @@ def _follow_windows(scene: Scene, peaks: dict[str, SignalPeak], designs: Array, 
     """Search along windows of these designs, and replace the peaks that are exceeded."""
     for group in groups(scene, (*peaks, "assembly"), designs, FEW_SAMPLES_AT_ONCE) if peaks else ():
         follow(group, peaks, (windows,))
+        _on_own_sides(group, peaks)
+
+
+def _on_own_sides(group: Group, peaks: dict[str, SignalPeak], first: float = 0.0) -> None:
+    """Move the angles of peaks of a group's designs that are limits at a jump to the side that has these values, in the
+    period that begins at `first`."""
+    rows, period = np.arange(len(group.designs)), group.scene.period
+    for signal, peak in peaks.items():
+        value, angle, *others = numbers_of(peak, group)
+        put(peak, group, (value, on_own_side(group.of(signal, rows), angle, value, period, first), *others))
 
 
 def paths_of(scene: Scene, kind: float) -> tuple[PathsOf, ...]:

@@ -24,7 +24,7 @@ from linksweep.engine.run import Field, Fields, evaluate
 from linksweep.engine.trace.plan import Plan, plan
 from linksweep.physics.algebra import planar
 from linksweep.physics.closures import crank_angle
-from linksweep.results.peak_search.along_paths import Best, SignalPeak, angle_in_period, put
+from linksweep.results.peak_search.along_paths import Best, SignalPeak, angle_in_period, on_own_side, put
 from linksweep.results.peak_search.between import ONE, half_tangent, half_turn_of
 from linksweep.results.peak_search.friction.directions import speed_at_one_angle
 from linksweep.results.peak_search.groups import Group, groups
@@ -56,6 +56,8 @@ BORDERS = np.array([90.0, 270.0])
 """Ends of half turns, from the near-toggle [degree]."""
 SHORTEST = 1e-6
 """Length of a piece of which only the start counts [degree]."""
+AT_END = 1e-6
+"""Tangent below which a place is the end of its piece, but for rounding."""
 BEYOND = 30.0
 """How far a piece may reach beyond its half turn, rather than be cut at the border [degree]."""
 
@@ -151,10 +153,11 @@ def highest_on_pieces(
     highest = {}
     levels = None if levels is None else levels[:, order]
     peaks = find_peaks_on_pieces(request, signals, inputs, ONE, pieces.counts, half, levels)
-    for signal, peak in peaks.items():
-        value, tangent, far, bound, samples, piece = peak
+    for signal, (value, tangent, far, bound, samples, piece) in peaks.items():
         at = np.arange(len(value)), np.nan_to_num(piece).astype(int)
         angle = angle_in_period(_angles(pieces, inputs, at, tangent, far) + frame, period)
+        (end,) = np.nonzero(np.abs(tangent) < AT_END)
+        angle[end] = on_own_side(group.of(signal, end), angle[end], value[end], period)
         highest[signal] = Best(value[back], angle[back], bound[back], samples[back])
     return highest
 

@@ -153,3 +153,49 @@ def test_a_yoke_with_much_friction_has_its_peaks_beside_one_in_a_toggle():
     peaks, largest = ls.peaks(scene, of=["F12"]), ls.sweep(scene, off_reversals, of=["F12"]).F12.max("theta2")
     assert peaks.status.values.tolist() == [2, 0]
     assert 0.0 <= (peaks.F12_peak / largest - 1.0)[1] < 1e-6
+
+
+# ---------------------------------------------------------------------------------------------- the angle's side
+
+
+def step(first, last):
+    """Return a push that begins at one angle and ends at another [N]."""
+    return xr.DataArray([-2000.0, 0.0], {"theta2": [first, last]}, "theta2").sortby("theta2")
+
+
+def pushed(push, *others, **words):
+    load = ls.Load("coupler", force=(0.0, push), at=(0.1, 0.0), **words)
+    return replace(ls.example("press"), omega2=30.0, loads=[load, *others])
+
+
+SPRING = ls.Spring(("ground", 0.0, 0.3), ("coupler", 0.1, 0.0), 10.0, 0.1)
+JUMPING = {
+    "a table": (pushed(step(30.1, 60.3), interpolation="step"), None),
+    "a table, round angles": (pushed(step(30.0, 60.0), interpolation="step"), None),
+    "a table and a spring": (pushed(step(30.1, 60.3), SPRING, interpolation="step"), None),
+    "a table that ends at 0": (pushed(step(300.0, 0.0), SPRING, interpolation="step"), None),
+    "a function": (pushed(lambda a: -2000.0 * ((a >= 53.7) & (a < 251.3)), breaks=(53.7, 251.3)), None),
+    "the end of a part": (pushed(step(30.0, 60.0), interpolation="step"), (30.0, 60.0)),
+    "a part of negative angles": (pushed(step(30.0, 60.0), interpolation="step"), (-345.0, -300.0)),
+    "friction": (replace(ls.example("engine"), loads=()), None),
+    "gas": (ls.example("engine"), None),
+    "a torsion spring": (replace(pushed(0.0), loads=[ls.TorsionSpring("crank", "ground", 5.0, 256.5)]), None),
+}
+
+
+@pytest.mark.parametrize("name", JUMPING)
+def test_a_sweep_at_the_angle_of_a_peak_has_its_value(name):
+    scene, part = JUMPING[name]
+    peaks = ls.peaks(scene, between=part)
+    for at in (str(each) for each in peaks if str(each).endswith("_at")):
+        quantity, _, end = at.removesuffix("_at").rpartition("_")
+        angle = float(peaks[at])
+        assert part is None or part[0] <= angle <= part[1]
+        there = ls.sweep(scene, [angle], of=[quantity])[quantity].item()
+        assert there == pytest.approx(float(peaks[f"{quantity}_{end}"]), rel=1e-8)
+
+
+def test_a_limit_at_the_end_of_a_part_stands_there():
+    scene, part = JUMPING["the end of a part"]
+    peaks = ls.peaks(scene, of=["F32"], between=part)
+    assert 0.0 < 60.0 - float(peaks.F32_peak_at) < 1e-8 and int(peaks.F32_peak_at_end) == 2
