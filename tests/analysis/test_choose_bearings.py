@@ -178,6 +178,22 @@ def test_an_unbounded_load_fits_no_bearing_and_part_of_a_turn_has_its_own_loads(
     np.testing.assert_allclose(part.F_peak, expected, rtol=1e-5)
 
 
+def test_a_part_of_a_turn_has_its_exact_largest_loads_between_samples():
+    """A push over a fifth of a degree: the largest loads are those of samples while it acts."""
+    push = xr.DataArray([0.0, -2000.0, 0.0], {"theta2": [0.0, 30.1, 30.3]}, "theta2")
+    load = ls.Load("coupler", force=(0.0, push), at=(0.1, 0.0), interpolation="step")
+    scene, names = replace(PRESS, loads=[load]), ("F12", "F32", "F43", "F14")
+    samples = ls.sweep(scene, np.linspace(30.1 + 1e-9, 30.3 - 1e-9, 51), of=names)
+    expected = [float(samples[name].max()) for name in names]
+    for part in ((0.0, 360.0), xr.DataArray([10.0, 30.0, 60.0], dims="theta2")):
+        np.testing.assert_allclose(ls.choose_bearings(scene, life="1 h", theta2=part).F_peak, expected, rtol=1e-8)
+
+
+def test_a_count_of_angles_is_the_whole_cycle():
+    whole, counted = (ls.choose_bearings(PRESS, life="10000 h", theta2=theta2) for theta2 in (None, 720))
+    xr.testing.assert_equal(whole, counted)
+
+
 def test_a_linkage_has_a_bearing_in_each_pin():
     chosen = ls.choose_bearings(ls.example("watt-2"), life="10000 h")
     assert chosen.pin.values.tolist() == [*ls.example("watt-2").mechanism.pins]

@@ -99,9 +99,8 @@ def bearings(
         return main_bearings(scene.in_memory, pins, theta2)
     links = checked_pins(scene, pins)
     scene = in_memory(scene)
-    grid = crank_grid(theta2, scene.period)
-    part = None if grid.period else (float(grid.angles.min()), float(grid.angles.max()))
-    refuse(angles_missing(scene) + _part_problems(part, scene.period))
+    part = part_of_turn(theta2, scene)
+    refuse(angles_missing(scene))
     names = [name for pin, pair in links.items() for name in _outputs(scene, pin, pair)]
     cycle = sweep(scene, theta2, of=["omega2", *dict.fromkeys(names)])
     fitted = {pin: (pins or {}).get(pin, Bearing()) for pin in links}
@@ -119,19 +118,22 @@ def bearings(
         for pin, bearing in fitted.items()
     ]
     results = side_by_side(parts, "pin", links, TEXTS)
-    angles = theta2 if part is None else f"<{len(grid.angles)} angles>"
+    angles = theta2 if part is None else f"<{cycle.sizes['theta2']} angles>"
     attributes = cycle.attrs | by_command(f"linksweep.bearings(scene, ..., theta2={angles})")
     return xr.Dataset({**results, "status": cycle["status"]}, cycle.coords, attributes)
 
 
-def _part_problems(part: Part | None, period: float) -> list[str]:
-    """Return the problem of two angles that cannot be the ends of a part of a turn."""
-    if part is None or 0.0 < part[1] - part[0] <= period:
-        return []
-    ends = f"theta2 = {part[0]:g} … {part[1]:g} degrees"
-    if part[0] == part[1]:
-        return [f"{ends}: is one angle; give the ends of a part of a turn, or a count"]
-    return [f"{ends}: is more than a cycle of {period:g} degrees; give a part of it, or a count"]
+def part_of_turn(theta2: Any, scene: Scene) -> Part | None:
+    """Return the ends [degree] of the way that angles state; None of a count, which states the whole cycle."""
+    grid = crank_grid(theta2, scene.period)
+    if grid.period:
+        return None
+    first, last = float(grid.angles.min()), float(grid.angles.max())
+    ends = f"theta2 = {first:g} … {last:g} degrees"
+    refuse([f"{ends}: is one angle; give the ends of a part of a turn, or a count"] if first == last else [])
+    too_long = f"{ends}: is more than a cycle of {scene.period:g} degrees; give a part of it, or a count"
+    refuse([too_long] if last - first > scene.period else [])
+    return first, last
 
 
 def _outputs(scene: Scene, pin: str, links: tuple[int, int]) -> list[str]:

@@ -16,7 +16,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.analysis.pins.bearing import EXPONENTS, Bearing, checked_pins
-from linksweep.analysis.pins.bearings import bearings
+from linksweep.analysis.pins.bearings import bearings, part_of_turn
 from linksweep.analysis.pins.catalogue import SIZES, DeepGroove, catalogue
 from linksweep.base.units import quantity
 from linksweep.base.validate import as_float, choice_problems, name_problems, quote, refuse
@@ -24,13 +24,12 @@ from linksweep.chains.between_links import force_name
 from linksweep.engine.threads import limits_threads
 from linksweep.results.compute import requested
 from linksweep.results.dataset import by_command, flags, joined, with_units
+from linksweep.results.peak_search.paths import Part
 from linksweep.results.peaks import peaks
 from linksweep.scene.scene import Scene
 
 SAMPLES = 24
 """Angles of the cycle whose integrals are taken, which do not depend on it."""
-ON_A_WAY = 721
-"""Angles of part of a turn, whose largest sample is the peak."""
 NONE = "none"
 TEXTS = {
     "required_capacity": ("N", "basic dynamic load rating C that the life asks for"),
@@ -85,7 +84,7 @@ def choose_bearings(
         Largest outside diameter, likewise [m]; None for any.
     theta2 : array_like, default None
         Angles [degree] of a machine that moves over part of a turn, of which the least and the largest are the ends of
-        its way; None for the whole cycle.
+        its way; None, or a count as in `linksweep.bearings`, for the whole cycle.
     threads : int, default None
         Largest number of threads; None for all cores.
 
@@ -126,8 +125,9 @@ def choose_bearings(
     refuse(choice_problems("kind", kind, EXPONENTS) + _problems(static_safety, series))
     bores, outsides = _limits("bore", bore, links, 0.0), _limits("outside", outside, links, np.inf)
     pins = {pin: Bearing(capacity=1.0, kind=kind) for pin in links}
-    loads = bearings(scene, pins, theta2=SAMPLES if theta2 is None else theta2)
-    largest = _largest(scene, links, theta2)
+    part = None if theta2 is None else part_of_turn(theta2, scene)
+    loads = bearings(scene, pins, theta2=SAMPLES if part is None else part)
+    largest = _largest(scene, links, part)
     turning = loads["L10h"].notnull() | (loads["rotation"] != 0.0)
     required = xr.where(turning, (hours / loads["L10h"]) ** (1.0 / EXPONENTS[kind]), 0.0)  # L10h ~ C^p, here of C = 1 N
     required_static = float(static_safety) * largest
@@ -151,11 +151,10 @@ def choose_bearings(
     return xr.Dataset({**choice, **described, "life_status": loads["life_status"]}, designs, attributes)
 
 
-def _largest(scene: Scene, links: Mapping[str, tuple[int, int]], theta2: Any) -> xr.DataArray:
-    """Return the largest load of each pin: exact over a cycle, of samples over part of a turn."""
+def _largest(scene: Scene, links: Mapping[str, tuple[int, int]], part: Part | None) -> xr.DataArray:
+    """Return the exact largest load of each pin, over the cycle or a part of a turn."""
     forces = [force_name(*pair) for pair in links.values()]
-    ends = None if theta2 is None else np.linspace(np.min(theta2), np.max(theta2), ON_A_WAY)
-    worst = peaks(scene, of=list(dict.fromkeys(forces)), theta2=ends)
+    worst = peaks(scene, of=list(dict.fromkeys(forces)), between=part)
     return joined([worst[f"{force}_peak"] for force in forces], "pin", links)
 
 
