@@ -9,6 +9,8 @@ with the endurance limit S_e, reached after N_e cycles, and the slope k of the S
 none does damage; where one does, those below count by the same line (the elementary form of Miner's rule). The cycle
 from the largest value to the least has the largest σ_ar of all where S_e < S_u, so that the safety needs no counting.
 
+Turning points are sought between the samples of a search for exact peaks: each narrow event that it finds counts.
+
 Sources: ASTM E1049-85, Standard Practices for Cycle Counting in Fatigue Analysis, section 5.4.5, rainflow counting of
 repeating histories; R. G. Budynas and J. K. Nisbett, Shigley's Mechanical Engineering Design, chapter "Fatigue Failure
 Resulting from Variable Loading", for Goodman's amplitude and Miner's rule.
@@ -18,22 +20,24 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 
 from linksweep.analysis.strength.material import Material
+from linksweep.engine.run import Field
+from linksweep.results.peak_search.between import EVERYWHERE
+from linksweep.results.peak_search.groups import Group, assembled_groups
+from linksweep.results.peak_search.paths import search_samples
 from linksweep.scene.dimensions import aligned
-from linksweep.scene.pairs import Array, quantities_at
+from linksweep.scene.pairs import Array, flat_index
 from linksweep.scene.scene import Scene
 
-PER_TURN, THIRDS = 720, 32
-"""Even samples of a turn, and steps towards an extreme between them, each of which leaves two thirds."""
+THIRDS = 32
+"""Steps towards an extreme between samples, each of which leaves two thirds."""
 SLIGHT = 1e-9
 """Range of a cycle of stress that is rounding, relative to the largest size of the stress."""
-BLOCK = 4096
-"""Designs whose samples are held at once."""
 
 
 def life(scene: Scene, names: tuple[str, str], place: xr.Dataset, material: Material) -> dict[str, xr.DataArray]:
@@ -89,43 +93,66 @@ def closed_cycles(turning: Array) -> tuple[Array, Array]:
     return mean[kept], 0.5 * size[kept]
 
 
-def turning_points(value_at: Callable[[Array, Array], Array], values: Array, step: float) -> tuple[Array, Array]:
-    """Return row and value of the extremes of periodic functions with even samples (row, sample), in order of the rows
-    and of the angles [degree]; `value_at` returns values at pairs of a row and an angle."""
-    before, after = np.roll(values, 1, axis=1), np.roll(values, -1, axis=1)
-    top, bottom = (values > before) & (values >= after), (values < before) & (values <= after)
-    row, k = np.nonzero(top | bottom)
-    sign = np.where(top[row, k], 1.0, -1.0)
-    low, high = (k - 1) * step, (k + 1) * step
+class Brackets(NamedTuple):
+    """Samples of periodic functions that are higher (sign 1) or lower (−1) than both of their neighbours: rows of the
+    functions, angles [degree] of the samples and their neighbours, and the sampled values."""
+
+    row: Array
+    sign: Array
+    low: Array
+    high: Array
+    value: Array
+
+
+def brackets(angles: Array, values: Array, period: float) -> Brackets:
+    """Return the brackets of all extremes of functions with samples (row, sample) in order, of which some repeat; in
+    order of the rows and of the angles."""
+    own = np.diff(angles, axis=1, prepend=-np.inf) > 0.0
+    count = own.sum(axis=1)
+    row, last = np.repeat(np.arange(len(count)), count), np.cumsum(count) - 1
+    x, value, nth = angles[own], values[own], np.arange(len(row))
+    first = (last - count + 1)[row]
+    before = first + (nth - 1 - first) % count[row]
+    after = first + (nth + 1 - first) % count[row]
+    top = (value > value[before]) & (value >= value[after])
+    (k,) = np.nonzero(top | (value < value[before]) & (value <= value[after]))
+    low, high = x[before] - period * (before > nth), x[after] + period * (after < nth)
+    return Brackets(row[k], np.where(top[k], 1.0, -1.0), low[k], high[k], value[k])
+
+
+def turning_points(value_at: Callable[[Array, Array], Array], found: Brackets) -> Array:
+    """Return the extremes in brackets; `value_at` returns values at pairs of a row and an angle [degree]."""
+    row, sign, low, high, sampled = found
     for _ in range(THIRDS):
         third = (high - low) / 3.0
         left, right = (sign * value_at(row, angle) for angle in (low + third, high - third))
         low, high = np.where(left < right, low + third, low), np.where(left < right, high, high - third)
-    return row, value_at(row, 0.5 * (low + high))
+    between = value_at(row, 0.5 * (low + high))
+    return np.where(sign * between > sign * sampled, between, sampled)  # at a jump the sample on its side is the limit
 
 
 def _histories(scene: Scene, names: tuple[str, str], place: dict[str, Array]) -> Iterator[tuple[int, Array]]:
     """Yield the number of each design that moves at all angles, and the turning points of its stress."""
-    count = PER_TURN * round(scene.period / 360.0)
-    step = scene.period / count
-    for start in range(0, len(place["fibre"]), BLOCK):
-        designs = np.arange(start, min(start + BLOCK, len(place["fibre"])))
+    sizes, every = scene.at_one_angle.inputs.sizes, np.arange(len(place["fibre"]))
+    numbers = Field(tuple(sizes), every.reshape(tuple(sizes.values())))
+    for _, group in assembled_groups(scene, names, (EVERYWHERE,), designs=every):
+        designs = flat_index(numbers, group.places, len(group.designs))
 
-        def stress_at(row: Array, angle: Array, designs: Array = designs) -> Array:
-            both = quantities_at(scene, names, designs[row], angle)
+        def stress_at(row: Array, angle: Array, group: Group = group, designs: Array = designs) -> Array:
+            both = group.values(names, row, angle)
             chosen = place["fibre"][designs[row]].astype(int)
             return both[chosen, np.arange(len(row))] * place["factor"][designs[row]]
 
-        rows = np.repeat(np.arange(len(designs)), count)
-        samples = stress_at(rows, np.tile(np.arange(count) * step, len(designs))).reshape(len(designs), count)
-        row, turning = turning_points(stress_at, samples, step)
+        angles = search_samples(group)
+        rows = np.repeat(np.arange(len(designs)), angles.shape[1])
+        samples = stress_at(rows, angles.ravel()).reshape(angles.shape)
+        found = brackets(angles, samples, scene.period)
+        turning = turning_points(stress_at, found)
         for one, design in enumerate(designs):
-            history = turning[row == one]
+            history = turning[found.row == one]
             if np.isfinite(samples[one]).all() and len(history):
-                history[np.argmax(history)], history[np.argmin(history)] = (
-                    place["largest"][design],
-                    place["least"][design],
-                )
+                history[np.argmax(history)] = place["largest"][design]
+                history[np.argmin(history)] = place["least"][design]
                 yield int(design), history
 
 

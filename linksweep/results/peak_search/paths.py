@@ -114,6 +114,12 @@ def turns(group: Any) -> Paths:
     return Paths(np.arange(len(x)), x, before, after, cuts)
 
 
+def search_samples(group: Group) -> Array:
+    """Return the samples (design, sample) of the whole period of a search, also those about closest approaches, in
+    order [degree]; some repeat."""
+    return in_order(in_period(np.concatenate([turns(group).x, approach_samples(group)], axis=1), group.scene.period))
+
+
 def thinned(angles: Array) -> Array:
     """Return every n-th angle (design, angle), with n such that about MOST_CUTS are left at most."""
     return angles[:, :: 1 + angles.shape[1] // MOST_CUTS]

@@ -21,11 +21,11 @@ def waves(theta2):
     return np.cos(theta) + np.cos(3.0 * theta)
 
 
-def bent(thickness=THICKNESS):
-    """Return a crank without mass, bent by a force across its end that rises three times a turn."""
+def bent(thickness=THICKNESS, force=lambda theta2: FORCE * waves(theta2), **words):
+    """Return a crank without mass, bent by a force across its end: one that rises three times a turn, or another."""
     crank = ls.Bar(LENGTH, WIDTH, thickness, density=0.0)
     machine = ls.FourBar(crank, ls.Bar(0.8, **THREAD), ls.Bar(0.7, **THREAD), ground=0.6)
-    push = ls.Load("crank", force=(0.0, lambda theta2: FORCE * waves(theta2)), at=(LENGTH, 0.0), frame="link")
+    push = ls.Load("crank", force=(0.0, force), at=(LENGTH, 0.0), frame="link", **words)
     return ls.Scene(machine, omega2=1.0, loads=[push])
 
 
@@ -71,6 +71,28 @@ def test_lives_of_designs_and_materials_are_those_of_each_alone():
     xr.testing.assert_allclose(ds.damage.transpose("design", "curve").reset_coords(drop=True), expected, rtol=1e-10)
     assert np.isinf(ds.life.isel(design=0)).all() and (ds.goodman_safety > 1.0).values.tolist() == [True, False, False]
     assert "life [cycles]" in str(ls.strength(bent(), STEEL, links="crank").linksweep)
+
+
+EDGES = [30.1, 30.4, 210.1, 210.4]
+
+
+def pulses(theta2):
+    """Return the force of two pulses of 0.3 degrees in a turn."""
+    return 4.0 * FORCE * (np.searchsorted(EDGES, np.asarray(theta2) % 360.0, side="right") % 2)
+
+
+TABLE = xr.DataArray([4.0 * FORCE, 0.0] * 2, {"theta2": EDGES}, "theta2")
+
+
+@pytest.mark.parametrize(
+    ("force", "words"), [(TABLE, {"interpolation": "step"}), (pulses, {"breaks": EDGES})], ids=["table", "function"]
+)
+def test_pulses_between_even_samples_count_each(force, words):
+    """Each is a cycle from 0 to σ: half of it is the mean, and half the amplitude."""
+    ds = ls.strength(bent(force=force, **words), STEEL, links="crank").sel(link="crank")
+    stress = 2.0 * NOMINAL / (1.0 - 2.0 * NOMINAL / STEEL.tensile_strength)
+    assert int(ds.stress_cycles) == 2
+    assert float(ds.damage) == pytest.approx(2.0 * (stress / STEEL.endurance) ** 5 / 1e6, rel=1e-8)
 
 
 def test_a_crank_is_as_thick_as_its_closed_form_requires():
