@@ -79,9 +79,10 @@ def share_parts(ds: xr.Dataset) -> Iterator[Part]:
     """Yield, for each force, the table of its sources at its worst angle, the largest first, and their sum."""
     for name in map(str, ds.data_vars):
         if "source" in ds[name].dims:
-            size = np.abs(ds[name].sum("source", skipna=False).values)
+            shares = ds[name].broadcast_like(ds["theta2"])
+            size = np.abs(shares.sum("source", skipna=False).values)
             if not np.isnan(size).all():
-                yield _share_table(ds[name].isel(theta2=int(np.nanargmax(size))))
+                yield _share_table(shares.isel(theta2=int(np.nanargmax(size))))
 
 
 def _share_table(shares: xr.DataArray) -> Table:

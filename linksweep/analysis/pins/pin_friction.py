@@ -23,6 +23,7 @@ from linksweep.base.validate import Number, count_problems, refuse
 from linksweep.chains.between_links import force_name
 from linksweep.engine.threads import limits_threads
 from linksweep.physics.bearing import friction_circle
+from linksweep.results.compute import require_one_branch
 from linksweep.results.dataset import flags, joined, with_units
 from linksweep.results.sweep import sweep
 from linksweep.scene.loads.load import Load
@@ -133,8 +134,7 @@ def _rubbing(scene: Scene, pins: Mapping[str, Bearing]) -> dict[str, RubbingPin]
     rubs = {pin: bearing for pin, bearing in pins.items() if np.any(bearing.friction)}
     refuse([f"pins.{pin} has friction but no diameter: give it" for pin, b in rubs.items() if b.diameter is None])
     refuse([] if rubs else ['pins: no pin has friction; give it, as in {"B": ls.Bearing(diameter=0.02, friction=0.1)}'])
-    both = bool(scene.mechanism.coordinates())
-    refuse(['branch = "both": pin friction must know one; choose it with ls.scene_at(scene, branch="open")'] * both)
+    require_one_branch(scene)
     return {pin: RubbingPin(*links[pin], friction_circle(b.friction, b.diameter)) for pin, b in rubs.items()}
 
 
@@ -187,9 +187,9 @@ def _efficiency(scene: Scene, loss: xr.DataArray, theta2: int) -> xr.DataArray:
     """Return the efficiency by energies over time: a sample stands for the time that the crank takes to the next."""
     names = [name for name in ("power", "omega2", "friction_power") if name in scene.table.quantity]
     cycle = sweep(scene, theta2, of=names)
-    times = 1.0 / abs(cycle["omega2"])
-    lost = ((loss - cycle.get("friction_power", 0.0)) * times).sum("theta2", skipna=False)
-    fed = (cycle["power"] * times).sum("theta2", skipna=False)
-    driven = ((fed - lost) / fed).clip(min=0.0)
+    with np.errstate(divide="ignore", invalid="ignore"):  # of a machine that stands still
+        powers = (power / abs(cycle["omega2"]) for power in (loss - cycle.get("friction_power", 0.0), cycle["power"]))
+        lost, fed = (power.broadcast_like(cycle["theta2"]).sum("theta2", skipna=False) for power in powers)
+        driven = ((fed - lost) / fed).clip(min=0.0)
     attributes = {"units": "1", "long_name": "energy that comes out of the machine in a cycle over the energy fed"}
     return xr.where(fed > 0.0, driven, fed / (fed - lost)).assign_attrs(attributes)
