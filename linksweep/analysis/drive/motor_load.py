@@ -24,7 +24,7 @@ from linksweep.results.peak_search.along_paths import PathsOf, angle_in_period, 
 from linksweep.results.peak_search.arcs import arcs_within
 from linksweep.results.peak_search.exact import paths_of
 from linksweep.results.peak_search.groups import Group, assembled_groups, empty_over_all
-from linksweep.results.peak_search.paths import Part, Paths
+from linksweep.results.peak_search.paths import Part, Paths, reversals
 from linksweep.results.peak_search.singular.poles import may_have_poles, poles
 from linksweep.results.sweep import sweep
 from linksweep.scene.grid import crank_grid
@@ -186,6 +186,11 @@ class Loaded(NamedTuple):
         every = np.repeat(np.arange(len(paths.row)), self.motors)
         motor = np.tile(np.arange(self.motors), len(paths.row))
         return paths.some(every)._replace(row=paths.row[every] * self.motors + motor)
+
+
+@reversals.register
+def _reversals(loaded: Loaded) -> Array:
+    return np.repeat(reversals(loaded.group), loaded.motors, axis=0)
 
 
 def _part(theta2: Any, scene: Scene) -> Part | None:

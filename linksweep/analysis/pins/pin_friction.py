@@ -158,16 +158,15 @@ def _converged(
 
 def _as_loads(scene: Scene, pins: Mapping[str, RubbingPin], torques: Arrays, theta2: int) -> list[Load]:
     """Return the moments of friction as torques on the moving links, each at its pin."""
-    angles, machine = xr.Variable("theta2", np.arange(theta2) * (scene.period / theta2)), scene.mechanism
+    angles = xr.Variable("theta2", np.arange(theta2) * (scene.period / theta2))
     loads = []
     for pin, rub in pins.items():
         on_j = torques[pin].broadcast_like(xr.DataArray(angles, {"theta2": angles}))
-        for number, torque in ((rub.j, on_j), (rub.i, -on_j)):
-            if number > 1:
-                role = machine.roles[number - 2]
-                at = machine.pin_place(role, pin.partition(":")[0])
-                # a moment jumps where its pin turns back: a spline would ring there
-                loads.append(Load(role, torque=_bare(torque), at=at, interpolation="pchip"))
+        acting = {rub.i: -on_j, rub.j: on_j}
+        for body in (one for one in scene.mechanism.bodies if one.number in acting):
+            torque, at = acting[body.number], scene.mechanism.pin_place(body.role, pin.partition(":")[0])
+            # a moment jumps where its pin turns back: a spline would ring there
+            loads.append(Load(body.role, torque=_bare(torque), at=at, interpolation="pchip"))
     return loads
 
 
