@@ -16,6 +16,8 @@ import numpy as np
 Array = np.ndarray
 Slopes = Callable[[Array, Array], Array]
 """Derivatives to time (system, component) of some systems, by their numbers, in their states."""
+Steps = tuple[Array, Array, Array, Array]
+"""Sizes of steps of some systems; states and derivatives at their ends; errors as multiples of what is allowed."""
 
 STAGES, EXPONENT = 12, -1.0 / 8.0
 SAFETY, LEAST, MOST = 0.9, 0.2, 5.0
@@ -31,15 +33,23 @@ GOES_ON, GIVEN_UP = 0, -1
 
 
 class Level(NamedTuple):
-    """A level of one component, for each system, on which a step ends: from below, or with sign -1 from above."""
+    """A level of one component, for each system, on which a step ends: from below, or with sign -1 from above.
+
+    A step may end beside it by its `slack`, 0 for one that is to be met exactly.
+    """
 
     component: int
     values: Array
+    slack: Array
     sign: float = 1.0
 
     def beyond(self, rows: Array, states: Array) -> Array:
         """Return how far states are beyond the level; negative before it."""
         return self.sign * (states[:, self.component] - self.values[rows])
+
+    def passed(self, rows: Array, states: Array) -> Array:
+        """Return which states are farther beyond the level than its slack."""
+        return self.beyond(rows, states) > self.slack[rows]
 
 
 class Trace(NamedTuple):
@@ -57,14 +67,14 @@ class Systems:
     """Systems to integrate: their derivatives, and how accurately and how far.
 
     Errors are relative to `scale` (system, component), inf for components that need no control. `longest` returns the
-    longest steps from states with these derivatives. `outcome`, called with numbers and states of systems after each of
-    their steps, returns `GOES_ON`, or another number with which a system stops.
+    longest steps of some systems, by their numbers, from states with these derivatives. `outcome`, called with numbers
+    and states of systems after each of their steps, returns `GOES_ON`, or another number with which a system stops.
     """
 
     slopes: Slopes
     scale: Array
     tolerance: float
-    longest: Callable[[Array, Array], Array]
+    longest: Callable[[Array, Array, Array], Array]
     levels: Sequence[Level]
     outcome: Callable[[Array, Array], Array]
 
@@ -73,23 +83,25 @@ class Systems:
         rows, outcome = np.arange(len(start)), outcome.copy()
         time, state, slope = np.zeros(len(start)), start.copy(), self.slopes(rows, start)
         outcome[(outcome == GOES_ON) & ~np.isfinite(slope).all(axis=1)] = GIVEN_UP
-        size = FIRST * self.longest(state, slope)
+        size = FIRST * self.longest(rows, state, slope)
         kept = [(rows, time.copy(), state.copy(), slope.copy())]
         rows = np.flatnonzero(outcome == GOES_ON)
         for _ in range(steps):
             if not len(rows):
                 break
-            longest = self.longest(state[rows], slope[rows])
+            longest = self.longest(rows, state[rows], slope[rows])
             h = np.minimum(size[rows], longest)
             new, new_slope, error = self._step(rows, state[rows], slope[rows], h)
+            for level in self.levels:
+                k = np.flatnonzero((error <= 1.0) & level.passed(rows, new))
+                if len(k):
+                    h[k], new[k], new_slope[k], error[k] = self._landing(
+                        rows[k], state[rows[k]], slope[rows[k]], level, (h[k], new[k], new_slope[k], error[k])
+                    )
             good = error <= 1.0
             ratio = np.clip(SAFETY * np.fmax(error, 1e-30) ** EXPONENT, LEAST, np.where(good, MOST, 1.0))
-            size[rows] = h * ratio
-            for level in self.levels:
-                k = np.flatnonzero(good & (level.beyond(rows, new) > 0.0))
-                if len(k):
-                    h[k] = self._landing(rows[k], state[rows[k]], slope[rows[k]], h[k], level)
-                    new[k], new_slope[k], _ = self._step(rows[k], state[rows[k]], slope[rows[k]], h[k])
+            cut_short = good & (h < size[rows])  # not for its error: the next step may have the size of this one before
+            size[rows] = np.where(cut_short, np.maximum(size[rows], h * ratio), h * ratio)
             done = rows[good]
             time[done] += h[good]
             state[done], slope[done] = new[good], new_slope[good]
@@ -123,28 +135,26 @@ class Systems:
         sound = np.isfinite(new).all(axis=1) & np.isfinite(error)
         return new, stages[STAGES], np.where(sound, error, np.inf)
 
-    def _landing(self, rows: Array, state: Array, slope: Array, size: Array, level: Level) -> Array:
-        """Return the steps that end on a level which these pass, by Newton's method kept within a bracket."""
-        low, high, h = np.zeros(len(rows)), size.copy(), size.copy()
-        near = np.maximum(LANDING * self.scale[rows, level.component], ROUNDING * abs(level.values[rows]))
-        live = np.arange(len(rows))
+    def _landing(self, rows: Array, state: Array, slope: Array, level: Level, passing: Steps) -> Steps:
+        """Return the steps that end on a level, from those which pass it, by Newton's method kept within a bracket."""
+        h, new, new_slope, error = (values.copy() for values in passing)
+        low, high, live = np.zeros(len(rows)), h.copy(), np.arange(len(rows))
+        exact = np.maximum(LANDING * self.scale[rows, level.component], ROUNDING * abs(level.values[rows]))
+        near = np.maximum(exact, level.slack[rows])
         for _ in range(LANDING_STEPS):
-            new, _ = self.advanced(rows[live], state[live], slope[live], h[live])
-            beyond = level.beyond(rows[live], new)
-            low[live], high[live] = (
-                np.where(beyond > 0.0, low[live], h[live]),
-                np.where(beyond > 0.0, h[live], high[live]),
-            )
+            beyond = level.beyond(rows[live], new[live])
             going = abs(beyond) > near[live]
-            live, beyond, new = live[going], beyond[going], new[going]
+            live, beyond = live[going], beyond[going]
             if not len(live):
                 break
-            rate = level.sign * self.slopes(rows[live], new)[:, level.component]
+            low[live] = np.where(beyond > 0.0, low[live], h[live])
+            high[live] = np.where(beyond > 0.0, h[live], high[live])
             with np.errstate(invalid="ignore", divide="ignore"):
-                newton = h[live] - beyond / rate
+                newton = h[live] - beyond / (level.sign * new_slope[live, level.component])
             inside = (newton > low[live]) & (newton < high[live])
             h[live] = np.where(inside, newton, 0.5 * (low[live] + high[live]))
-        return h
+            new[live], new_slope[live], error[live] = self._step(rows[live], state[live], slope[live], h[live])
+        return h, new, new_slope, error
 
 
 def _combined(coefficients: Array, stages: Array) -> Array:

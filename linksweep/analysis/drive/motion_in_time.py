@@ -8,6 +8,9 @@ i, and the inertia J_f of flywheel and rotor about the crank's axis,
 T is the torque on the crank by inverse dynamics, with inertia, weights, loads, springs, dampers and friction in it, and
 L what the gear takes (`drive_train`). Without both friction and L it is T(φ, w, 0) + J(φ) dw/dt, J the reduced inertia;
 with one of them, dw/dt is found by the secant method.
+
+Steps end where loads jump or change quickly, on both sides of a jump, so that none passes over a load that is narrower
+than itself. Within a step, derivatives beyond its end are those at its end: the other side of a jump is not seen.
 Source: R. Eksergian, Dynamical Analysis of Machines (1930).
 """
 
@@ -20,8 +23,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from linksweep.engine.time_steps import GIVEN_UP, GOES_ON, LANDING, Level, Systems, Trace
-from linksweep.scene.pairs import Array, Pairs
+from linksweep.engine.time_steps import GIVEN_UP, GOES_ON, LANDING, ROUNDING, Level, Systems, Trace
+from linksweep.results.peak_search.groups import all_at_once
+from linksweep.results.peak_search.paths import ASIDE, both_sides, listed_jumps, thinned
+from linksweep.scene.pairs import Array, Pairs, in_order, in_period
 from linksweep.scene.scene import Scene
 
 ANGLE, SPEED, WORK, HEAT, LOSS = range(5)
@@ -30,6 +35,10 @@ TOLERANCE = 1e-10
 """Error of a step, relative to a radian and to a usual speed."""
 LONGEST = np.radians(30.0)
 """Angle of the longest step."""
+NEAR = 0.5 * np.radians(ASIDE)
+"""Distance from a cut [rad] at which it is reached: half of that between a jump and its sides."""
+SLACK = 0.25
+"""Distance from a cut at which it is reached, too, as a part of that to the closest other one."""
 AT_REST = 1e-30
 """Speed [rad/s] in place of 0: a crank that is about to turn has friction against it."""
 ANGLES = 96
@@ -146,17 +155,51 @@ class Run:
         count = len(self.target)
         self.cycle = np.radians(self.crank.scene.period)
         self.known = self.speeds.copy()
-        self.target_level = Level(SPEED, self.target, self.sign)
-        self.rest_level = Level(SPEED, np.zeros(count), -1.0)
+        exact = np.zeros(count)
+        self.target_level = Level(SPEED, self.target, exact, self.sign)
+        self.rest_level = Level(SPEED, np.zeros(count), exact, -1.0)
         self.most = np.ceil(2.0 * np.pi * self.turns / self.cycle - 1e-9)
-        self.cycle_level = Level(ANGLE, np.full(count, self.cycle))
+        self.cycle_level = Level(ANGLE, np.full(count, self.cycle), exact)
         self.scale = np.full((count, 5), np.inf)
         self.scale[:, ANGLE], self.scale[:, SPEED] = 1.0, self.usual
+        self.cut_level = Level(ANGLE, *self._next_cuts(np.arange(count), np.zeros(count)))
+
+    @cached_property
+    def cuts(self) -> tuple[Array, Array]:
+        """Ends of steps (design, cut), φ [rad] in a cycle, and how far beside them a step may end [rad]."""
+        scene, designs = self.crank.scene, np.arange(len(self.target))
+        quick = np.repeat(thinned(scene.quick.angles[None]), len(designs), axis=0)
+        angles = np.concatenate([both_sides(listed_jumps(all_at_once(scene, designs))), quick], axis=1)
+        turned = np.radians(self.crank.direction[:, None] * (angles - self.crank.start[:, None]))
+        whole = np.broadcast_to([0.0, self.cycle], (len(designs), 2))
+        ends = in_order(np.concatenate([whole, in_period(turned, self.cycle)], axis=1))
+        gaps = np.diff(ends, axis=1)
+        return ends[:, 1:], np.maximum(SLACK * np.minimum(gaps, np.roll(gaps, -1, axis=1)), NEAR)
+
+    def _next_cuts(self, rows: Array, angle: Array) -> tuple[Array, Array]:
+        """Return the next cut of some designs beyond φ [rad], and how far beside it a step may end."""
+        cuts, slack = (numbers[rows] for numbers in self.cuts)
+        ahead = np.mod(cuts - angle[:, None], self.cycle)
+        ahead = np.where(ahead > slack + ROUNDING * angle[:, None], ahead, np.inf)
+        row, k = np.arange(len(rows)), np.argmin(ahead, axis=1)
+        return angle + ahead[row, k], slack[row, k]
+
+    def _slopes(self, rows: Array, state: Array) -> Array:
+        """Return the derivatives of states to time; beyond the place where a step ends at last, those at it."""
+        within, last = state.copy(), self.cut_level.values[rows] + self.cut_level.slack[rows]
+        within[:, ANGLE] = np.minimum(state[:, ANGLE], last)
+        return self.crank.slopes(rows, within)
+
+    def _longest(self, rows: Array, state: Array, slope: Array) -> Array:
+        """Return the times in which cranks turn by `LONGEST`, or to the next cut, at their present accelerations."""
+        way = np.minimum(LONGEST, self.cut_level.values[rows] - state[:, ANGLE])
+        speed = abs(state[:, SPEED])
+        return 2.0 * way / (speed + np.sqrt(abs(speed**2 + 2.0 * way * slope[:, SPEED])))
 
     @cached_property
     def systems(self) -> Systems:
-        levels = (self.target_level, self.rest_level, self.cycle_level)
-        return Systems(self.crank.slopes, self.scale, TOLERANCE, longest, levels, self._outcome)
+        levels = (self.target_level, self.rest_level, self.cycle_level, self.cut_level)
+        return Systems(self._slopes, self.scale, TOLERANCE, self._longest, levels, self._outcome)
 
     @cached_property
     def trace(self) -> Trace:
@@ -178,7 +221,8 @@ class Run:
         return np.all(status.reshape(count, n) == 0.0, axis=1)
 
     def _outcome(self, rows: Array, state: Array) -> Array:
-        """Return what has become of some designs after a step, and set their next whole cycle."""
+        """Return what has become of some designs after a step, and set their next cut and whole cycle."""
+        self.cut_level.values[rows], self.cut_level.slack[rows] = self._next_cuts(rows, state[:, ANGLE])
         near = 10.0 * LANDING * self.scale[rows, SPEED]
         reached = self.target_level.beyond(rows, state) > -near
         stops = state[:, SPEED] < near
@@ -192,9 +236,3 @@ class Run:
         settles[lands] = gain < SETTLED * self.scale[whole, SPEED]
         lasts[lands] = cycles >= self.most
         return np.select([reached, stops, settles, lasts], [REACHED, STOPS, SETTLES, LASTS], GOES_ON)
-
-
-def longest(state: Array, slope: Array) -> Array:
-    """Return the times in which cranks turn by `LONGEST`, at their present accelerations."""
-    speed, rise = abs(state[:, SPEED]), abs(slope[:, SPEED])
-    return 2.0 * LONGEST / (speed + np.sqrt(speed**2 + 2.0 * LONGEST * rise))

@@ -1,41 +1,46 @@
 """Operating point of a machine on its motor: the speed at which the motor gives what the machine takes on average.
 
-At a constant speed w the machine takes the mean T̄(w) over the cycle of the torque of inverse dynamics; at the operating
-point i·M(i·w) = T̄(w) + L, with the torque L that the gear takes. Of several such speeds it is the fastest, which a
-motor of falling torque keeps. The motor's own fluctuation over the cycle shifts the mean speed by its square only.
+At a constant speed w the machine takes the mean T̄(w) over the cycle of the torque of inverse dynamics, by the
+quadrature of `duty`; at the operating point i·M(i·w) = T̄(w) + L, with the torque L that the gear takes. Of several such
+speeds it is the fastest, which a motor of falling torque keeps. The motor's own fluctuation over the cycle shifts the
+mean speed by its square only.
 """
 
 from __future__ import annotations
 
-import numpy as np
+from dataclasses import replace
 
+import numpy as np
+import xarray as xr
+
+from linksweep.analysis.drive.motion_in_time import AT_REST
 from linksweep.analysis.drive.runs import Designs
+from linksweep.results.peaks import peaks
 from linksweep.scene.pairs import Array
 
-ANGLES = 96
-"""Angles of a turn over which the torque is averaged."""
 PARTS = np.linspace(0.0, 1.0, 5)
 """Speeds, as parts of the fastest, between which the torque is a polynomial, for a search; without friction it is one
 of the second degree."""
 PLACES, ROUNDS = 512, 8
-"""Speeds at which the search looks, and steps of the secant method from there."""
+"""Speeds at which the search looks, and most steps of the secant method from there."""
+ROUNDING = 1e-14
+"""Step of the secant method, relative to the fastest speed, that is its last one."""
 
 
 def operating_speed(designs: Designs) -> Array:
     """Return the speed of each design at its operating point [rad/s]; NaN where it has none."""
-    crank, top, count = designs.crank(), designs.top_speed, designs.count
-    n = ANGLES * round(crank.scene.period / 360.0)
-    rows, angles = np.repeat(np.arange(count), n), np.arange(n) * (np.radians(crank.scene.period) / n)
-    pairs, still = crank.at(rows, np.tile(angles, count)), np.zeros(len(rows))
+    crank, top = designs.crank(), designs.top_speed
 
     def load(speed: Array) -> Array:
         """Return the mean torque that machines take at constant speeds; NaN where one does not turn fully."""
-        torque, status = crank.values((crank.torque, "status"), pairs, np.repeat(speed, n), still)
-        return np.mean(np.where(status == 0.0, crank.direction[rows] * torque, np.nan).reshape(count, n), axis=1)
+        omega2 = designs.over_dims(crank.direction * np.maximum(speed, AT_REST))
+        mean = f"{crank.torque}_mean"
+        cycle = peaks(replace(designs.scene, omega2=xr.DataArray(omega2)), of=mean)
+        return crank.direction * designs.flat(cycle[mean].where(cycle["status"] == 0))
 
     def supply(speed: Array) -> Array:
         """Return the torque of the motors behind their gears."""
-        every = np.arange(count)
+        every = np.arange(designs.count)
         return designs.torque(every, speed) - crank.loss(every, speed, 0.0 * speed)
 
     def excess(speed: Array) -> Array:
@@ -54,4 +59,6 @@ def operating_speed(designs: Designs) -> Array:
         with np.errstate(invalid="ignore", divide="ignore"):
             step = now * (speed - last) / (now - before)
         last, before, speed = speed, now, np.where(np.isfinite(step), speed - step, speed)
+        if not (abs(speed - last) > ROUNDING * top).any():
+            break
     return np.where(enough.any(axis=0), np.where(first == 0, top, speed), np.nan)

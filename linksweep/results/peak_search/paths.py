@@ -198,12 +198,9 @@ def kinks(group: Group) -> Array:
 def jump_angles(group: Group) -> Array:
     """Return the jumps (design, jump) of the whole period [degree], and the angles at which friction begins to jam and
     contacts bear nothing; NaN where others have more."""
-    turn, designs = group.scene.mechanism.period, len(group.designs)
-    turns = range(round(group.scene.period / turn))
-    angles = [group.number(jump) + turn * k for jump in group.scene.jumps() for k in turns]
     located = [group.zeros(kind) + start for kind in JUMPS for start in starts_of_motion(group)]
-    located += [jam + turn * k for jam in _jam_angles(group) for k in turns]
-    jumps = np.concatenate([np.empty((designs, 0)), *(jump[:, None] for jump in angles), *located], axis=1)
+    located += [jam + start for jam in _jam_angles(group) for start in _turns(group)]
+    jumps = np.concatenate([listed_jumps(group), *located], axis=1)
     return distinct(np.concatenate([jumps, contact_angles(group, both_sides(jumps))], axis=1))
 
 
@@ -216,8 +213,7 @@ def reversals(group: Any) -> Array:
     scene, none = group.scene, np.empty((len(group.designs), 0))
     if not scene.mechanism.rubs:
         return none
-    turns = np.arange(0.0, scene.period, scene.mechanism.period)
-    known = [group.number(jump)[:, None] + turns for jump in scene.mechanism.jumps()]
+    known = [group.number(jump)[:, None] + _turns(group) for jump in scene.mechanism.jumps()]
     return np.concatenate([none, *known, over_whole_period(group, group.zeros("jump"))], axis=1)
 
 
@@ -225,6 +221,17 @@ def moved_aside(angles: Array, jump: Array, period: float) -> Array:
     """Return angles [degree] with each that is at its jump moved to the nearer side."""
     away = signed_distance(angles, jump, period)
     return np.where(np.abs(away) < AT_JUMP, angles - away + np.copysign(AT_JUMP, away), angles)
+
+
+def listed_jumps(group: Group) -> Array:
+    """Return the jumps (design, jump) of the whole period that the scene lists [degree]."""
+    angles = [group.number(jump)[:, None] + _turns(group) for jump in group.scene.jumps()]
+    return np.concatenate([np.empty((len(group.designs), 0)), *angles], axis=1)
+
+
+def _turns(group: Group) -> Array:
+    """Return the angles [degree] at which the turns of the whole period begin."""
+    return np.arange(0.0, group.scene.period, group.scene.mechanism.period)
 
 
 def _jam_angles(group: Group) -> list[Array]:

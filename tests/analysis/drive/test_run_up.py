@@ -6,6 +6,7 @@ import numpy as np
 import oracle_in_time as reference
 import pytest
 import xarray as xr
+from scipy.optimize import brentq
 
 import linksweep as ls
 
@@ -205,6 +206,71 @@ def test_run_down_to_standstill():
     run = ls.run_down(braked, flywheel=0.1, until=0.0, of=["F12"])
     np.testing.assert_allclose(run.duration, 40.0 * 0.105 / 15.0, rtol=1e-9)
     np.testing.assert_allclose(run.turns, 0.5 * 1600.0 * 0.105 / 15.0 / (2.0 * np.pi), rtol=1e-9)
+
+
+# ----------------------------------------------------------------------------------------------- narrow loads
+
+
+def pulsed(torque, width, centre, omega2=1.0):
+    """Return a crank of constant inertia against one pulse of torque in each turn."""
+    angles = {"theta2": [0.0, centre - 0.5 * width, centre + 0.5 * width]}
+    against = xr.DataArray([0.0, -np.sign(omega2) * torque, 0.0], angles, "theta2")
+    return replace(FLYWHEEL, omega2=omega2, loads=[ls.Load("crank", torque=against, interpolation="step")])
+
+
+@pytest.mark.parametrize(
+    ("torque", "width", "centre", "omega2"),
+    [(20.0, 5.0, 90.0, 30.0), (20.0, 5.0, 200.3, 30.0), (50.0, 2.0, 90.0, -30.0), (20000.0, 0.01, 123.4, 30.0)],
+)
+def test_run_down_against_pulses(torque, width, centre, omega2):
+    """Each pulse takes the same energy, at a constant deceleration; between them the crank keeps its speed."""
+    run = ls.run_down(pulsed(torque, width, centre, omega2), flywheel=0.1, until=0.9, of=["T12"])
+    inertia, wide = 0.105, np.radians(width)
+    pulses = 0.5 * inertia * omega2**2 * (1.0 - 0.9**2) / (torque * wide)
+    first = centre if omega2 > 0.0 else 360.0 - centre
+    np.testing.assert_allclose(
+        run.turns, int(pulses) + (first - 0.5 * width + (pulses % 1.0) * width) / 360.0, rtol=1e-9
+    )
+    speeds = np.sqrt(omega2**2 - 2.0 * torque * wide / inertia * np.arange(int(pulses) + 1))  # between pulses
+    within = (abs(omega2) - 0.9 * abs(omega2)) * inertia / torque  # of all pulses together
+    free = np.radians(np.append(first, np.full(int(pulses), 360.0)) - [0.5 * width, *[width] * int(pulses)])
+    np.testing.assert_allclose(run.duration, within + np.sum(free / speeds), rtol=1e-9)
+    np.testing.assert_allclose(run.T12_peak, torque * 0.1 / inertia, rtol=1e-9)  # what the flywheel does not give
+
+
+@pytest.mark.parametrize(("torque", "width", "centre"), [(50.0, 5.0, 90.0), (250.0, 1.0, 200.3), (25e3, 0.01, 300.0)])
+def test_run_up_against_pulses(torque, width, centre):
+    """dω/dt = (ω_end − ω)/τ, τ = J ω0/M0, with ω_end = ω0 (1 − T/M0): in closed form between the ends of pulses."""
+    motor = ls.DCMotor(stall_torque=10.0, no_load_speed=60.0)
+    run = ls.run_up(pulsed(torque, width, centre), motor, flywheel=0.1, until=0.8, of=["T12"])
+    usual, tau = 60.0 * (1.0 - torque * width / 3600.0), 0.105 * 6.0
+    np.testing.assert_allclose(run.operating_speed, usual, rtol=1e-10)
+    time, angle, speed, against, end = 0.0, 0.0, 0.0, 0.0, centre - 0.5 * width
+    while True:
+        to, way = 60.0 * (1.0 - 0.1 * against), np.radians(end) - angle
+
+        def left(t, speed=speed, to=to, way=way):
+            return to * t + (speed - to) * tau * (1.0 - np.exp(-t / tau)) - way
+
+        at_rest = tau * np.log1p(-speed / to) if to < 0.0 else 10.0
+        needed = brentq(left, 0.0, at_rest, xtol=1e-15)
+        after = to + (speed - to) * np.exp(-needed / tau)
+        if after > 0.8 * usual:
+            break
+        time, angle, speed, against = time + needed, np.radians(end), after, torque - against
+        end += width if against else 360.0 - width
+    np.testing.assert_allclose(run.duration, time + tau * np.log((to - speed) / (to - 0.8 * usual)), rtol=1e-9)
+
+
+def test_the_operating_point_of_a_press():
+    """A punch of 20 J a stroke takes 20/2π N m on average, however short it is."""
+    motor, light = ls.DCMotor(stall_torque=20.0, no_load_speed=30.0), replace(SLIDER_CRANK.mechanism, friction=0.0)
+    scene = replace(SLIDER_CRANK, mechanism=light)
+    for height in (0.012, 1e-4):
+        force = xr.DataArray([-20.0 / height, 0.0], {"position": [0.0, height]}, "position")
+        punch = ls.Load("slider", force=force, over="slider.to_end", while_="closing", interpolation="step")
+        run = ls.run_up(replace(scene, loads=[punch]), motor, until=0.01, start=90.0, of=["T12"])
+        np.testing.assert_allclose(run.operating_speed, 30.0 * (1.0 - 1.0 / (2.0 * np.pi)), rtol=1e-10)
 
 
 # -------------------------------------------------------------------------------------- what comes to nothing
