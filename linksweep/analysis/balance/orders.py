@@ -18,7 +18,7 @@ from linksweep.base.validate import count_problems, name_problems, quote, refuse
 from linksweep.mechanisms import indices
 from linksweep.results.compute import requested, require_dataset
 from linksweep.results.dataset import by_command, with_units
-from linksweep.results.origin.machine_of_results import machine_of_results, name_in_results
+from linksweep.results.origin.machine_of_results import cycle_of_results, name_in_results
 from linksweep.scene.grid import whole_turns
 
 TURN = 360.0
@@ -46,8 +46,8 @@ def orders(ds: xr.Dataset, of: str | Iterable[str], *, n: int = 12) -> xr.Datase
     Raises
     ------
     ValueError
-        If a name is unknown, the angles are no whole cycle in equal steps (of cranks geared by p/q, q turns), or n is
-        more than half the samples of a turn.
+        If a name is unknown, the angles are no whole cycle in equal steps (of cranks geared by p/q, q turns; of loads
+        that repeat after two turns, both), or n is more than half the samples of a turn.
 
     Notes
     -----
@@ -70,10 +70,9 @@ def orders(ds: xr.Dataset, of: str | Iterable[str], *, n: int = 12) -> xr.Datase
     refuse([problem for name in names for problem in name_problems("of", name, known)] + count_problems("n", n))
     angles = ds[index].values.astype(float)
     period = _period(angles, index)
-    machine = machine_of_results(ds)
-    whole = TURN if machine is None else TURN * machine.turns
-    part = f"{index} covers {period:g} degrees, but the motion repeats after {whole:g}: sweep with a count, such as "
-    refuse([f"{part}{index}={2.0 * whole:g}"] if period % whole else [])
+    whole = cycle_of_results(ds) or TURN
+    part = f"{index} covers {period:g} degrees, but motion and loads repeat after {whole:g}: sweep with a count, "
+    refuse([f"{part}such as {index}={2.0 * whole:g}"] if period % whole else [])
     most = len(angles) * TURN / period / 2.0
     few = f"n = {quote(n)}: {len(angles)} samples resolve orders below {most:g}; sweep at more angles"
     refuse([] if n < most else [few])

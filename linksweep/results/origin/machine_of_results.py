@@ -1,4 +1,4 @@
-"""Find the machine whose results a Dataset holds, and its drive."""
+"""Find the machine whose results a Dataset holds, its cycle and its drive."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import xarray as xr
 from linksweep.base.validate import refuse
 from linksweep.mechanisms import MECHANISMS, Mechanism
 from linksweep.results.compute import force_in, require_dataset
-from linksweep.scene.file.reading import mechanism_of
+from linksweep.scene.file.reading import mechanism_of, parse_scene
 
 
 def machine_of_results(ds: xr.Dataset) -> Mechanism | None:
@@ -19,6 +19,19 @@ def machine_of_results(ds: xr.Dataset) -> Mechanism | None:
     name, known = parameters_of_scene(ds).get("mechanism", {}).get("type"), ", ".join(MECHANISMS)
     refuse([] if name is None or name in MECHANISMS else [f"ds: is of a {name}; registered are {known}: register it"])
     return None if name is None else _machine(ds.attrs["scene"])
+
+
+def cycle_of_results(ds: xr.Dataset) -> float | None:
+    """Return the cycle [degree] after which motion and loads of a Dataset's machine repeat, of the motion alone where
+    arrays of loads were dropped; None where it has lost its scene."""
+    machine = machine_of_results(ds)
+    if machine is None:
+        return None
+    arrays = {str(path): ds[path].reset_coords(drop=True) for path in ds.variables}
+    try:
+        return parse_scene(ds.attrs["scene"], "ds", arrays, whole=False).period
+    except ValueError:
+        return machine.period * machine.turns
 
 
 def name_in_results(ds: xr.Dataset, name: Any) -> Any:

@@ -292,7 +292,7 @@ def test_orders_are_fractions():
 
 def test_orders_of_a_part_of_the_cycle_are_refused():
     scene = two_slides("3/2", phase=25.0)
-    with pytest.raises(ValueError, match=r"covers 360 degrees, but the motion repeats after 720: .* theta2=1440"):
+    with pytest.raises(ValueError, match=r"covers 360 degrees, but motion and loads repeat after 720: .* theta2=1440"):
         ls.orders(ls.sweep(scene, np.arange(72) * 5.0, of=["x_tower"]), "x_tower", n=3)
     twice = ls.orders(ls.sweep(scene, np.arange(288) * 5.0, of=["x_tower"]), "x_tower", n=1)
     np.testing.assert_allclose(twice.order, np.arange(5) / 4)
