@@ -3,7 +3,8 @@
 The balance of torques R(φ, w, dw/dφ) of `drive_train`, with w = ½ω², is collocated in elements between angles
 (`collocation`), and Newton's method closes the cycle, w(φ + period) = w(φ). Each step is a linear equation of the first
 order, solved exactly: the change at the first angle, carried round, must come back to itself. Elements whose defect has
-more energy than the tolerance are split, so that jumps and corners of loads and friction lie in short ones.
+more energy than the tolerance are split, so that jumps and corners of loads and friction lie in short ones; those that
+the scene lists are ends of elements from the start, however narrow a load is.
 
 A step takes only a part of w away. Where w then still falls, step by step, to next to nothing somewhere, the machine
 cannot keep turning: it stalls.
@@ -19,6 +20,8 @@ import numpy as np
 from linksweep.analysis.drive import collocation
 from linksweep.analysis.drive.collocation import BETWEEN, BETWEEN_WEIGHTS, INTEGRALS, POINTS, WEIGHTS, Linear
 from linksweep.analysis.drive.drive_train import DriveTrain, TrainAtAngles
+from linksweep.results.peak_search.groups import all_at_once
+from linksweep.results.peak_search.paths import distinct, listed_jumps, thinned
 
 STATUS = ("ok", "not_whole", "stalls", "runs_away", "unstable", "not_found")
 """Words of the status: no whole turn; the motor is too weak; no speed at which it brakes the loads enough; a deviation
@@ -36,6 +39,8 @@ TOLERANCE = 1e-12
 """Energy of an element's defect, in twice the kinetic energy, above which the element is split."""
 SPLITS, PARTS = 12, 8
 """Times that an element may be split, and into how many."""
+CLOSEST = 1e-8
+"""Least distance between ends of elements at the start [degree]."""
 LONGEST, SAMPLES = 16, 2_000_000
 """Elements for each at the start, and designs times Gauss points, beyond which no element is split."""
 END = 1e-6
@@ -116,8 +121,8 @@ class Periodic(NamedTuple):
 def periodic(train: DriveTrain, count: int, whole: Array) -> Periodic:
     """Return the motions that repeat, over elements that end at `count` even angles and others; of designs that turn
     all the way round, `whole`."""
-    elements = count * math.ceil(train.scene.period / count)  # of a degree at most
-    travel = np.arange(elements + 1) * (train.scene.period / elements)
+    travel = _first_ends(train, count)
+    elements = len(travel) - 1
     speed, surplus = _first_guess(train, whole)
     w = np.repeat(0.5 * speed[:, None] ** 2, elements + 1, axis=1)
     motion, floor = Motion(travel, w, np.zeros((len(speed), elements, 3))).only(whole), FLOOR * w[:, 0]
@@ -136,6 +141,19 @@ def periodic(train: DriveTrain, count: int, whole: Array) -> Periodic:
         motion, old = motion.split(which)
         defect, coarse, new = defect[:, old], coarse[old], np.isin(old, which)
     return Periodic(motion, factor, defect.sum(axis=1), status)
+
+
+def _first_ends(train: DriveTrain, count: int) -> Array:
+    """Return ends of elements [degree]: `count` even angles, others at most a degree apart, and, in any design, where
+    loads jump or are quick."""
+    scene = train.scene
+    elements = count * math.ceil(scene.period / count)
+    size = scene.period / elements
+    designs = np.arange(math.prod(scene.at_one_angle.inputs.sizes.values()))
+    jumps = listed_jumps(all_at_once(scene, designs)).ravel()
+    cuts = np.mod(train.direction * np.concatenate([jumps, thinned(scene.quick.angles[None])[0]]), scene.period)
+    between = distinct(cuts[abs(cuts - size * np.round(cuts / size)) > CLOSEST][None], CLOSEST)
+    return np.unique(np.append(np.arange(elements + 1) * size, between))
 
 
 def balance(at: TrainAtAngles, w: Array, a: Array, floor: Array) -> Linear:

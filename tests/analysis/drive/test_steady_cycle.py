@@ -224,6 +224,19 @@ def test_a_load_that_jumps_is_followed():
     assert float(cycle.energy_residual) < 1e-8
 
 
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_narrow_pulses_are_not_missed(sign):
+    """Against a heavy flywheel the motor gives the mean of the pulses, 0.5 N m, and in a cycle their energy."""
+    ends = [0.0, 200.15, 200.199, 200.201, 200.25]
+    torque = xr.DataArray(np.zeros((2, 5)), {"theta2": ends}, ("width", "theta2"))
+    torque[0, 1:4], torque[1, 2] = -180.0 / 0.1, -180.0 / 0.002
+    scene = disk([ls.Load("crank", torque=sign * torque, interpolation="step")])
+    cycle = ls.steady_cycle(replace(scene, omega2=sign), DC, flywheel=1e3, theta2=36)
+    np.testing.assert_allclose(cycle.motor_work, np.radians(180.0), rtol=1e-9)
+    np.testing.assert_allclose(cycle.speed_mean, 160.0 * (1.0 - 0.5 / 6.0), rtol=1e-7)
+    np.testing.assert_allclose(cycle.energy_residual, 0.0, atol=1e-8)
+
+
 def test_designs_are_those_one_by_one_and_blocks_change_nothing(monkeypatch):
     length = xr.DataArray([0.21, 0.22, 0.30, 0.23], {"coupler": list("abcd")}, "coupler")
     press = ls.example("press")
