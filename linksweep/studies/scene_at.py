@@ -31,7 +31,8 @@ def scene_at(ds: xr.Dataset | Scene, where: Mapping[str, Any] | None = None, /, 
     Returns
     -------
     Scene
-        Scene whose sweep and peaks equal those of the design in the study, bit for bit.
+        Scene whose sweep and peaks equal those of the design in the study, bit for bit; but of a Dataset, functions of
+        theta2 come back as splines, as from `linksweep.load_scene`.
 
     Raises
     ------

@@ -302,6 +302,8 @@ def test_a_car_in_a_loop_has_no_crank_to_plot_over():
     for draw in (plot.forces, plot.torque, plot.bearing, plot.mechanism):
         with pytest.raises(ValueError, match=r"cannot draw a LoopTrack, which has no drawing of links .plot\.loop"):
             draw(ds)
+    with pytest.raises(ValueError, match="cannot draw a LoopTrack"):
+        ls.save_drawing(scene, "loop.dxf", curves=[("crank", 0.02, 10.0)])
     assert [ax.get_ylabel() for ax in plot.cycle(ds).axes] == [ax.get_ylabel() for ax in plot.loop(ds).axes]
 
 

@@ -13,6 +13,7 @@ from linksweep.base.fields import POLAR_POINT
 from linksweep.base.validate import Rule, choice_problems, quote, refuse
 from linksweep.files.atomic import ending_of, whole
 from linksweep.files.netcdf import scene_of
+from linksweep.plot.kit.drawings import drawing_of
 from linksweep.plot.machine import crank_angle
 from linksweep.plot.sheets.skeleton import Curve, skeleton
 from linksweep.scene.scene import Scene
@@ -77,6 +78,7 @@ def save_drawing(
     ending = ending_of(path, ENDINGS)
     one = scene if isinstance(scene, Scene) else scene_of(scene, whole=False)
     angle = crank_angle(theta2)
+    drawing_of(one.mechanism)  # refuses a machine without one, before its curves
     points = None if curves is None else _points(one, curves)
     size = None if scale is None else scale_of(scale)
     refuse([f"scale = {quote(scale)}: a DXF file is in full size; leave it out"] if size and ending == ".dxf" else [])

@@ -88,6 +88,8 @@ def _spaced(choice: tuple[Any, ...], kind: str) -> np.ndarray:
     low, high = (quantity(end, kind) for end in ends)
     refuse(["count is missing: give how many values"] if count is None else count_problems("count", count))
     require_memory(f"count = {count}", 8.0 * count)
+    if count == 1 and low != high:
+        raise ValueError(f"{quote(choice)}: two ends need a count of at least 2; a list [...] may hold one value")
     return evenly(low, high, int(count))
 
 

@@ -99,6 +99,7 @@ def test_a_grid_is_stored_and_found_again(tmp_path):
         ({"ground": (0.19, 0.21)}, "ground: (0.19, 0.21): must be a range (low, high, count); a list [...] holds"),
         ({"ground": (0.19, 0.21, 0)}, "ground: count = 0: must be a whole number, 1 or more"),
         ({"ground": (0.19, 0.21, None)}, "ground: count is missing: give how many values"),
+        ({"ground": (0.19, 0.21, 1)}, "ground: (0.19, 0.21, 1): two ends need a count of at least 2; a list"),
         ({"ground": ["20 kg"]}, 'ground: "20 kg": kg is a unit of mass, not of length'),
         ({"ground": [0.2, 0.21, 0.2]}, "ground: has 0.2 more than once: give each value once"),
         ({"ground": xr.DataArray(0.2)}, "ground: is one number: give it to the scene itself, or a DataArray"),
