@@ -120,9 +120,9 @@ def brackets(angles: Array, values: Array, period: float) -> Brackets:
     return Brackets(row[k], np.where(top[k], 1.0, -1.0), low[k], high[k], value[k])
 
 
-def turning_points(value_at: Callable[[Array, Array], Array], found: Brackets) -> Array:
+def turning_points(value_at: Callable[[Array, Array], Array], extremes: Brackets) -> Array:
     """Return the extremes in brackets; `value_at` returns values at pairs of a row and an angle [degree]."""
-    row, sign, low, high, sampled = found
+    row, sign, low, high, sampled = extremes
     for _ in range(THIRDS):
         third = (high - low) / 3.0
         left, right = (sign * value_at(row, angle) for angle in (low + third, high - third))
@@ -146,10 +146,10 @@ def _histories(scene: Scene, names: tuple[str, str], place: dict[str, Array]) ->
         angles = search_samples(group)
         rows = np.repeat(np.arange(len(designs)), angles.shape[1])
         samples = stress_at(rows, angles.ravel()).reshape(angles.shape)
-        found = brackets(angles, samples, scene.period)
-        turning = turning_points(stress_at, found)
+        extremes = brackets(angles, samples, scene.period)
+        turning = turning_points(stress_at, extremes)
         for one, design in enumerate(designs):
-            history = turning[found.row == one]
+            history = turning[extremes.row == one]
             if np.isfinite(samples[one]).all() and len(history):
                 history[np.argmax(history)] = place["largest"][design]
                 history[np.argmin(history)] = place["least"][design]
