@@ -4,12 +4,14 @@ The crank turns at ω = ω0·(1 + e·cos θ): a turn takes 2π/(ω0·√(1 − e
 T/(c·sin μ) in rod and rocker, for a torque T on the rocker; a torque on the crank is all that its drive feels.
 """
 
+import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
 import xarray as xr
 from references import mp
+from scipy.integrate import quad
 
 import linksweep as ls
 
@@ -191,3 +193,27 @@ def test_counterweights_are_best_over_time():
         for change in (0.98, 1.02):
             other = replace(weight, mass=weight.mass * change, inertia=weight.inertia * change)
             assert size([*weights[:k], other, *weights[k + 1 :]]) > best
+
+
+def reached(rocker: float) -> tuple[float, float]:
+    """Angles [rad] between which a crank of 0.3 m moves, with a coupler of 0.22 m on a ground of 0.2 m: in both,
+    coupler and rocker lie in one line."""
+    ends = (abs(0.22 - rocker), 0.22 + rocker)
+    cosines = [(0.3**2 + 0.2**2 - distance**2) / (2 * 0.3 * 0.2) for distance in ends]
+    return math.acos(min(1.0, cosines[0])), math.acos(cosines[1])
+
+
+@pytest.mark.parametrize(("part", "error"), [({}, 1e-12), ({"between": (0, 360)}, 1e-12), ({"theta2": 36_000}, 1e-3)])
+@pytest.mark.parametrize("omega2", [10.0, lambda theta2: 10.0 + np.cos(np.radians(theta2))])
+@pytest.mark.parametrize("rocker", [0.18, 0.25, 0.1])
+def test_what_knows_the_crank_alone_counts_where_the_machine_closes(rocker, omega2, part, error):
+    """Bx = a cos θ2 between two toggles; its mean over time is (∫ Bx/ω dθ)/(∫ 1/ω dθ)."""
+    machine = ls.FourBar(*(ls.Link(length, 0.0, 0.0) for length in (0.3, 0.22, rocker)), ground=0.2)
+    ds = ls.peaks(ls.Scene(machine, omega2), of=["Bx", "Bx_mean"], **part)
+    first, last = reached(rocker)
+    pace = omega2 if callable(omega2) else lambda theta2: omega2
+    moment, time = (
+        quad(lambda t, n=n: math.cos(t) ** n / pace(math.degrees(t)), first, last, epsabs=1e-13)[0] for n in (1, 0)
+    )
+    expected = 0.3 * math.cos(first), 0.3 * math.cos(last), 0.3 * moment / time
+    assert [ds[name].item() for name in ("Bx_max", "Bx_min", "Bx_mean")] == pytest.approx(expected, abs=error)

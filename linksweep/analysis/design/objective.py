@@ -237,9 +237,9 @@ class Objective:
         advice = 'a search by gradients needs the name of a result, as minimize="F32_peak"'
         refuse([] if self.target else [f"minimize is a function: {advice}"])
         advice = "leave it out, or search by values alone, as differential_evolution does"
-        given = {name: value for name in PARTS if (value := self.options.get(name)) is not None}
+        parts = {name: value for name in PARTS if (value := self.options.get(name)) is not None}
         words = f"gradients are those of the whole cycle's peak: {advice}"
-        refuse([f"{name} = {quote(value)}: {words}" for name, value in given.items()])
+        refuse([f"{name} = {quote(value)}: {words}" for name, value in parts.items()])
 
     def _numbers(self, x: Any) -> np.ndarray:
         x = np.asarray(x, dtype=float)

@@ -294,19 +294,6 @@ def test_rises_that_differ_by_more_than_the_search_errs_do_not_tie(offset, statu
     assert int(ds.T12_peak_status) == int(ds.F14_peak_status) == status
 
 
-@pytest.mark.parametrize("turns", [2, 3])
-def test_rises_that_come_again_in_each_turn_of_the_cycle_do_not_tie(turns):
-    """A load of several turns leaves the motion as it is: turned in its plane, a machine has the same extremes."""
-    push = ls.Load("coupler", force=(0.0, lambda theta2: -30.0 * np.cos(np.radians(theta2 / turns))), at=(0.1, 15.0))
-    scene = replace(ls.example("press"), loads=[push])
-    assert scene.mechanism.ground_angle == 0.0
-    names = ["transmission_angle_min", "omega4_max", "alpha4_max"]
-    ds = ls.sensitivities(scene, of=names, to=["ground_angle"])
-    for name in names:
-        assert int(ds[f"{name}_status"]) == 0
-        assert np.abs(ds[f"{name}_derivative"].values) < 1e-13 * float(ds[name])
-
-
 def test_two_narrow_rises_beside_each_other_tie():
     """Two torques of one height, 0.4 degrees from each other and a tenth as wide, on a machine without other forces;
     the slope of the torque to gravity is that of virtual work, which differs between them."""

@@ -1,6 +1,7 @@
 """Derivatives of single results: lives of bearings and time ratios against closed forms, the others by differences."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -161,3 +162,16 @@ def test_tolerances_and_constraints_take_lives_and_time_ratios():
     for name, constraint in zip(bounds, lightest.constraints, strict=True):
         assert constraint.fun(lightest.x0) == pytest.approx(float(own[name]), rel=1e-12)
         assert constraint.jac(lightest.x0) == pytest.approx(own[f"{name}_derivative"].values, rel=1e-9)
+
+
+@pytest.mark.parametrize("turns", [2, 3])
+def test_rises_that_come_again_in_each_turn_of_the_cycle_do_not_tie(turns):
+    """A load of several turns leaves the motion as it is: turned in its plane, a machine has the same extremes."""
+    push = ls.Load("coupler", force=(0.0, lambda theta2: -30.0 * np.cos(np.radians(theta2 / turns))), at=(0.1, 15.0))
+    scene = replace(ls.example("press"), loads=[push])
+    assert scene.mechanism.ground_angle == 0.0
+    names = ["transmission_angle_min", "omega4_max", "alpha4_max"]
+    ds = ls.sensitivities(scene, of=names, to=["ground_angle"])
+    for name in names:
+        assert int(ds[f"{name}_status"]) == 0
+        assert np.abs(ds[f"{name}_derivative"].values) < 1e-13 * float(ds[name])
