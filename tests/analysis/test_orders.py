@@ -62,12 +62,12 @@ def test_a_four_stroke_cycle_has_half_orders():
     assert float(orders.Fsy_amplitude.sel(order=0.5)) < 1e-9 * float(orders.Fsy_amplitude.max())
 
 
-@pytest.mark.parametrize("torque_of", [lambda torque, angles: torque, lambda torque, angles: torque(angles)])
-def test_loads_over_two_turns_have_half_orders_and_one_turn_is_refused(torque_of):
+@pytest.mark.parametrize("form", [lambda torque, angles: torque, lambda torque, angles: torque(angles)])
+def test_loads_over_two_turns_have_half_orders_and_one_turn_is_refused(form):
     """A torque of 6 (1 - cos θ/2) against a crank alone: 6 N m at the orders 0 and 1/2."""
     angles = xr.DataArray(np.arange(0.0, 720.0, 5.0), dims="theta2")
     angles = angles.assign_coords(theta2=angles)
-    torque = torque_of(lambda theta2: -6.0 * (1.0 - np.cos(np.radians(theta2 / 2.0))), angles)
+    torque = form(lambda theta2: -6.0 * (1.0 - np.cos(np.radians(theta2 / 2.0))), angles)
     light = ls.SliderCrank(CRANK, ROD, slider_mass=0.0)
     scene = ls.Scene(light, 10.0, loads=[ls.Load("crank", torque=torque)])
     orders = ls.orders(ls.sweep(scene, 144, of=["T12"]), "T12", n=1)

@@ -98,7 +98,8 @@ def motor_load(
         - `torque_margin_min` [N m] and `torque_margin_min_at` [degree]: the exact least margin of the continuous cycle,
           or between the least and the largest of several angles; -inf where the torque grows without bound
         - `reflected_inertia` [kg m²]: the rotor's inertia at the driven link, inertia·ratio²
-        - `motor_torque_rms` [N m]: root mean square over time, which heats the motor.
+        - `motor_torque_rms` [N m]: root mean square over time, which heats the motor: of the samples at theta2, between
+          which a narrow load may lie. `effort_rms` of `linksweep.duty` is exact, of the torque on the driven link.
 
     Raises
     ------
@@ -140,7 +141,11 @@ def motor_load(
         "torque_margin_min": (least, "N m", "least available torque less the magnitude of the motor's"),
         "torque_margin_min_at": (at, "degree", f"{scene.mechanism.spot} of the least margin of the motor's torque"),
         "reflected_inertia": (motor.inertia * ratio**2, "kg m^2", "rotor inertia at the driven link"),
-        "motor_torque_rms": (np.sqrt(mean_over_time(needed**2, cycle, index)), "N m", "rms over time of motor_torque"),
+        "motor_torque_rms": (
+            np.sqrt(mean_over_time(needed**2, cycle, index)),
+            "N m",
+            "rms over time of motor_torque, of its samples",
+        ),
     }
     return cycle[["status"]].assign(with_units(results)).assign_attrs(command="linksweep.motor_load(scene, ...)")
 

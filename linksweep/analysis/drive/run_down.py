@@ -89,8 +89,9 @@ def run_down(
 
     Notes
     -----
-    Time and speed are accurate to about 1e-9; quantities are sampled at 144 places a turn or more, and the highest
-    refined to the same accuracy. Where a crank swings back after its standstill is not computed.
+    Time and speed are accurate to about 1e-9, with steps that end where loads jump or change quickly; quantities are
+    sampled at 144 places a turn or more, and the highest refined to the same accuracy. Where a crank swings back after
+    its standstill is not computed.
 
     Examples
     --------

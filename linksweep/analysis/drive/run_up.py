@@ -98,8 +98,9 @@ def run_up(
     Notes
     -----
     The motor's torque is that of its speed: its electrical transients, which last some periods of the mains, are left
-    out. A crank that its weights would turn backwards does not start. Time and speed are accurate to about 1e-9;
-    quantities are sampled at 144 places a turn or more, and the highest refined to the same accuracy.
+    out. A crank that its weights would turn backwards does not start. Time and speed are accurate to about 1e-9, with
+    steps that end where loads jump or change quickly; quantities are sampled at 144 places a turn or more, and the
+    highest refined to the same accuracy.
 
     Examples
     --------

@@ -101,7 +101,7 @@ def steady_cycle(
         Results over the design dims of scene, motor, gear and flywheel; over theta2 those that change:
 
         - `omega2` [rad/s] and `alpha2` [rad/s²] of the crank: ``ds.linksweep.scene`` is the scene with this motion,
-          which `linksweep.sweep`, `linksweep.peaks` and all others take
+          which `linksweep.sweep`, `linksweep.peaks` and all others take; see the notes on loads that jump
         - `motor_speed` [rad/s], `motor_torque` [N m], `motor_power` [W]; of an induction motor `slip` [1]
         - `drive_torque` [N m] on the crank: what inverse dynamics asks for
         - `speed_mean` over time, `speed_max` and `speed_min` [rad/s], `fluctuation` [1], `cycle_time` [s]
@@ -125,8 +125,15 @@ def steady_cycle(
     -----
     The motion is the periodic solution of T(θ, ω, α) + J_s α + L = i·M(i·ω), with the torque T of inverse dynamics,
     the inertia J_s of flywheel and rotor, and the torque L that the gear takes: see
-    `linksweep.analysis.drive.drive_train`. Loads, dampers and friction act at the speeds of the motion itself. Sources:
-    R. Eksergian, Dynamical Analysis of Machines (1930); F. Wittenbauer, Graphische Dynamik (1923).
+    `linksweep.analysis.drive.drive_train`. Loads, dampers and friction act at the speeds of the motion itself.
+
+    The scene joins omega2 and alpha2 between the angles theta2 by splines. Where loads or friction jump, alpha2 jumps,
+    which a spline cannot do: there results of the scene are right at the angles theta2 alone, as of
+    ``linksweep.sweep(ds.linksweep.scene, ds.theta2.values)``. Its exact peaks are those of the spline, which beside a
+    jump err by a part of the jump, however many the angles are. `motor_torque_max` and all else of the cycle in this
+    Dataset have the jumps in.
+
+    Sources: R. Eksergian, Dynamical Analysis of Machines (1930); F. Wittenbauer, Graphische Dynamik (1923).
 
     Examples
     --------

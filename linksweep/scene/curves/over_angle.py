@@ -196,7 +196,9 @@ def _warn_of_overshoot(path: str, overshoot: float) -> None:
     if overshoot <= RINGING:
         return
     instead = 'give its load interpolation = "pchip" (or "linear", "step"), or give it at more angles'
-    instead = instead if path.startswith("loads") else "give it at more angles, or as a function"
+    of_motion = "give it at more angles, or as a function; where it jumps, as alpha2 of a steady cycle with the loads, "
+    of_motion += "results are right at its own angles alone: sweep at these, theta2 = scene.alpha2.theta2"
+    instead = instead if path.startswith("loads") else of_motion
     text = f"{path}: the spline through its values leaves their range by {100.0 * overshoot:.2g} % of it; {instead}"
     warnings.warn(text, OvershootWarning, stacklevel=2)
 

@@ -224,6 +224,17 @@ def test_a_load_that_jumps_is_followed():
     assert float(cycle.energy_residual) < 1e-8
 
 
+def test_the_scene_of_a_load_that_jumps_is_right_at_its_own_angles():
+    """Without a flywheel the drive gives all that the motor does; beside a jump a spline through alpha2 does not."""
+    torque = xr.DataArray([-8.0, 0.0], {"theta2": [0.0, 100.1]}, "theta2")
+    loads = [ls.Load("crank", torque=torque, interpolation="step"), ls.TorsionDamper("ground", "crank", 0.1)]
+    cycle = ls.steady_cycle(disk(loads), DC, theta2=72)
+    samples = ls.sweep(cycle.linksweep.scene, cycle.theta2.values, of=["T12"])
+    np.testing.assert_allclose(samples.T12, 6.0 * (1.0 - cycle.omega2 / 160.0), rtol=1e-9)
+    with pytest.warns(ls.OvershootWarning, match="^alpha2: .*at its own angles alone: sweep at these"):
+        ls.peaks(cycle.linksweep.scene, of=["T12"])
+
+
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_narrow_pulses_are_not_missed(sign):
     """Against a heavy flywheel the motor gives the mean of the pulses, 0.5 N m, and in a cycle their energy."""
