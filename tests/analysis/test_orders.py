@@ -111,3 +111,13 @@ def test_bars_show_the_amplitudes():
     assert sentence == [f"$F_{{sx}}$, largest {size} N at order 1", "$F_{sy}$"]
     with pytest.raises(ValueError, match="there are no orders of T12; there are Fsx, Fsy"):
         ls.plot.orders(orders, ["T12"])
+
+
+def test_shaking_knows_no_load_and_repeats_after_the_turn_of_the_motion():
+    engine = ls.example("engine")
+    assert engine.period == 720.0
+    one, both = (ls.orders(ls.sweep(engine, angles, of=["Fsx"]), "Fsx", n=4) for angles in (np.arange(360.0), 720))
+    whole = both.sel(order=one.order)
+    assert one.Fsx_amplitude.values == pytest.approx(
+        whole.Fsx_amplitude.values, abs=1e-9 * float(whole.Fsx_amplitude.max())
+    )

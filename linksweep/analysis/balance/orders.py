@@ -70,7 +70,7 @@ def orders(ds: xr.Dataset, of: str | Iterable[str], *, n: int = 12) -> xr.Datase
     refuse([problem for name in names for problem in name_problems("of", name, known)] + count_problems("n", n))
     angles = ds[index].values.astype(float)
     period = _period(angles, index)
-    whole = cycle_of_results(ds) or TURN
+    whole = cycle_of_results(ds, names) or TURN
     part = f"{index} covers {period:g} degrees, but motion and loads repeat after {whole:g}: sweep with a count, "
     refuse([f"{part}such as {index}={2.0 * whole:g}"] if period % whole else [])
     most = len(angles) * TURN / period / 2.0

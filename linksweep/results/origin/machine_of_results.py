@@ -12,6 +12,7 @@ from linksweep.base.validate import refuse
 from linksweep.mechanisms import MECHANISMS, Mechanism
 from linksweep.results.compute import force_in, require_dataset
 from linksweep.scene.file.reading import mechanism_of, parse_scene
+from linksweep.scene.pairs import changes
 
 
 def machine_of_results(ds: xr.Dataset) -> Mechanism | None:
@@ -21,17 +22,19 @@ def machine_of_results(ds: xr.Dataset) -> Mechanism | None:
     return None if name is None else _machine(ds.attrs["scene"])
 
 
-def cycle_of_results(ds: xr.Dataset) -> float | None:
-    """Return the cycle [degree] after which motion and loads of a Dataset's machine repeat, of the motion alone where
-    arrays of loads were dropped; None where it has lost its scene."""
+def cycle_of_results(ds: xr.Dataset, names: list[str]) -> float | None:
+    """Return the cycle [degree] after which some results of a Dataset repeat: that of the motion where no load enters
+    them, or where arrays of loads were dropped; None where it has lost its scene."""
     machine = machine_of_results(ds)
     if machine is None:
         return None
     arrays = {str(path): ds[path].reset_coords(drop=True) for path in ds.variables}
     try:
-        return parse_scene(ds.attrs["scene"], "ds", arrays, whole=False).period
+        scene = parse_scene(ds.attrs["scene"], "ds", arrays, whole=False)
     except ValueError:
         return machine.period * machine.turns
+    known = scene.table.quantity.keys() >= {*names}
+    return scene.period_of_motion if known and not changes(scene, tuple(names)) else scene.period
 
 
 def name_in_results(ds: xr.Dataset, name: Any) -> Any:
