@@ -77,8 +77,7 @@ def pin_friction(
     Returns
     -------
     Dataset
-        Cycle as from `linksweep.sweep`; its scene has the moments of friction as loads, each at
-        its pin. Besides:
+        Cycle as from `linksweep.sweep`; its scene has the moments of friction as loads, each at its pin. Besides:
 
         - `friction_torque` (…, pin, theta2) [N m]: moment of link i on link j of the pin's force Fij
         - `friction_loss` (…, pin, theta2) [W], never negative
