@@ -89,7 +89,7 @@ def peaks(
     degrees, or more densely where they change more quickly; arrays at least as densely as their angles. A narrower
     event is found if the load's `breaks` name its angle.
 
-    In means over time each small angle dθ2 counts by the time dθ2/|ω2|. A crank whose speed is 0 at some angle, as
+    In means over time each small angle dθ2 counts by the time ``dθ2/|ω2|``. A crank whose speed is 0 at some angle, as
     where it changes its sign, takes infinite time to pass it and ends no cycle: its means are NaN, its peaks are not.
     Of a crank that stands still at all angles (omega2=0) they are means over the angle.
 
