@@ -111,7 +111,9 @@ def rise_derivatives(
     held, jumps, moves = _at_jumps(pairs, angles, to)
     (polished_heights,) = pairs.at((name,), polished)
     smooth &= ~jumps & (np.abs(polished_heights - heights) <= SAME * np.abs(heights))  # not in the middle of a jump
-    sides = on_own_side(lambda _, places: pairs.at((name,), places)[0], angles, heights, pairs.scene.period)
+    sides = on_own_side(
+        lambda rows, places: pairs.some(rows).at((name,), places)[0], angles, heights, pairs.scene.period
+    )
     place = np.where(smooth, polished, sides)
     values = pairs.at(tuple(derivative_of(name, path) for path in (*to, ANGLE)), place)
     slopes, steep = values[:-1], values[-1]

@@ -100,15 +100,15 @@ def on_own_side(
 ) -> Array:
     """Return the angles [degree] of peaks; of a limit at a jump the angle just beside it, where the quantity has this
     value, in the period that begins at `first`."""
-    rows, known = np.arange(len(angle)), np.nan_to_num(angle)
-    places = [known, *(first + in_period(known + side - first, period) for side in (-ASIDE, ASIDE))]
+    angle = angle.copy()
     with np.errstate(invalid="ignore"):  # of peaks that are infinite, or are none
-        missed = np.abs(values_at(rows, known) - height) > ATTAINED * np.abs(height)
-        if not missed.any():
-            return angle
-        away = np.stack([np.abs(values_at(rows, place) - height) for place in places])
-    nearest = np.nan_to_num(away, nan=np.inf).argmin(axis=0)
-    return np.where(missed, np.choose(nearest, places), angle)
+        away = np.abs(values_at(np.arange(len(angle)), np.nan_to_num(angle)) - height)
+        (row,) = np.nonzero(away > ATTAINED * np.abs(height))
+        if len(row):
+            places = [angle[row], *(first + in_period(angle[row] + side - first, period) for side in (-ASIDE, ASIDE))]
+            beside = [away[row], *(np.abs(values_at(row, place) - height[row]) for place in places[1:])]
+            angle[row] = np.choose(np.nan_to_num(beside, nan=np.inf).argmin(axis=0), places)
+    return angle
 
 
 def put(peak: SignalPeak, group: Any, numbers: tuple[Array, ...]) -> None:
