@@ -11,6 +11,7 @@ from linksweep.engine.kernel.translate import translated
 
 MOST = 5
 HALF = 0.5
+PAIR = (1.0, 2.0)
 
 
 def arithmetic(x, k, result):
@@ -152,3 +153,17 @@ def with_two_types(x):
 def test_what_has_no_translation_is_named(function, text):
     with pytest.raises(SyntaxError, match=rf"test_translate, line \d+: no translation for {text}"):
         translated(function, ("f8[:]",))
+
+
+def first_of_pair(row):
+    """Take a number out of a constant tuple."""
+    row[0] = PAIR[0]
+
+
+def test_a_constant_that_changes_makes_other_machine_code(monkeypatch):
+    """Code is kept on disk, by a text that differs wherever the function does."""
+    row = np.zeros(1)
+    for number in PAIR:
+        monkeypatch.setitem(first_of_pair.__globals__, "PAIR", (number, 7.0))
+        translated(first_of_pair, ("f8[:]",))(row)
+        assert row[0] == number
