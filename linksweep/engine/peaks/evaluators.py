@@ -36,30 +36,17 @@ from linksweep.engine.kernel.instructions import REGISTER as LANES
 from linksweep.engine.kernel.instructions import Instructions
 from linksweep.engine.kernel.machine_code import INTEGER, INTEGERS, ROW, TABLE, MachineCode, is_kept, machine_code
 from linksweep.engine.patience import Patience
+from linksweep.engine.peaks import roles
 from linksweep.engine.peaks.interpreted import Interpreted
 from linksweep.engine.peaks.lanewise import Values
+from linksweep.engine.peaks.roles import PIECE, Roles
 from linksweep.engine.peaks.samples import HALF, PLACED
-from linksweep.engine.trace.graph import Node, in_order, leading_to, operands
+from linksweep.engine.trace.graph import Node
 from linksweep.engine.trace.operators import interpret
 from linksweep.engine.trace.parity import parities
-from linksweep.engine.trace.plan import Plan
 
-SOURCE = inspect.getsource(sys.modules[__name__]) + inspect.getsource(parities)
+SOURCE = inspect.getsource(sys.modules[__name__]) + inspect.getsource(roles) + inspect.getsource(parities)
 """All that enters the machine code besides nodes and instructions."""
-SLOW = {"/", "sqrt"}
-"""Operations that take several times as long as others."""
-TANGENT, FAR = "half_tangent", "far_half"
-"""Inputs that place a sample: the tangent of half its angle from the middle of its half turn, and which half."""
-PIECE = "_piece"
-"""Dim of the pieces of a turn: they are counted after the designs, those of all designs with the same number together.
-"""
-ALONG, END = "piece_tangent", "piece_end"
-"""Inputs that place a sample on a piece of the turn instead, which a turn follows there and back: the tangent of half
-the angle from the piece's start or end, and which of the two."""
-ANYWHERE, OF_HALF = "tangent_anywhere", "half_anywhere"
-"""Inputs that place a sample anywhere on a turn instead: tangent and half turn, as above."""
-WIDTHS = NEAR_WIDTH, FAR_WIDTH = "near_toggle_near", "near_toggle_far"
-"""Widths of the near-toggles in those middles."""
 SOON = 2 * LANES
 """Designs from the first lane's to one whose parameters are fetched into the caches: that of the lanes after the next.
 """
@@ -92,56 +79,8 @@ class Functions(NamedTuple):
         return [each.address if isinstance(each, MachineCode) else each for each in functions]
 
 
-class Evaluators(Patience):
-    """Evaluators of some of a plan's outputs, its signals."""
-
-    def __init__(self, plan: Plan, signals: tuple[str, ...]) -> None:
-        self.plan, self.signals = plan, [plan.outputs[signal] for signal in signals]
-        place = {node.value: node for node in plan.input_nodes}
-        self.even = ALONG in place
-        """True where signals are the same at opposite tangents: on the way there and back."""
-        self.anywhere = ANYWHERE in place
-        """True where samples do not mirror each other."""
-        names = (ALONG, END) if self.even else (ANYWHERE, OF_HALF) if self.anywhere else (TANGENT, FAR)
-        self.tangent, self.far = (place[name] for name in names)
-        work = [node for node in plan.nodes if node.operands]
-        self.inputs = [node for node in place.values() if node not in (self.tangent, self.far)]
-        self.dims = sorted(plan.loops, key=lambda dim: dim != PIECE)
-        """The design dims as designs are counted, the last one fastest."""
-        self.of_designs = [node for node in work if not self._turns(node)]
-        self.at_samples = [node for node in work if self._turns(node)]
-        used = {x for x in operands(self.at_samples) if not self._turns(x)}
-        used |= {x for x in operands(node for node in self.of_designs if PIECE in node.dims) if PIECE not in x.dims}
-        self.constants = [*(plan.outputs[width] for width in WIDTHS), *in_order(used - {*plan.constants})]
-        self.ahead = self._needed([node for node in self.at_samples if node.operator in SLOW and self.parity[node]])
-        """Operations at a place that lead to divisions and roots, which the place shares with its mirror."""
-        self.left = [node for node in self.at_samples if node not in set(self.ahead)]
-        """The operations that are left to do there."""
-        of_all = self._of_all()
-        self.own = [node for node in self.at_samples if node not in of_all]
-        """The operations at samples that each design does for itself."""
-        used = operands(self.own) & of_all
-        self.shared = in_order(used)
-        """The values that those take from what all designs have in common."""
-        used |= operands(self.left) | {*self.signals}
-        self.kept = [node for node in [self.tangent, self.far, *self.ahead] if node in used]
-        """The values that operations left to do, and those of each design, take from the place and from the operations
-        before."""
-
-    def _turns(self, node: Node) -> bool:
-        """Return whether a node depends on the place."""
-        return self.plan.index in node.dims
-
-    def _of_all(self) -> set[Node]:
-        """Return the nodes with the same value for all designs at a sample; none where those have samples of their
-        own."""
-        of_place = self.far.dims
-        alike = self.tangent.dims == of_place and all(signal.dims > of_place for signal in self.signals)
-        return {node for node in (self.tangent, self.far, *self.at_samples) if alike and node.dims == of_place}
-
-    def _needed(self, nodes: list[Node]) -> list[Node]:
-        """Return the operations at samples that lead to some of them, and these themselves."""
-        return [node for node in leading_to(nodes) if self._turns(node) and node.operands]
+class Evaluators(Roles, Patience):
+    """The evaluators of some of a plan's outputs, its signals."""
 
     @cached_property
     def interpreted(self) -> Functions:
@@ -318,11 +257,6 @@ class Evaluators(Patience):
                 there[node] = here[node] if parity > 0 else vectors.operators["negate"](here[node])
         return there
 
-    @cached_property
-    def parity(self) -> dict[Node, int]:
-        """1 for nodes with the same value at opposite tangents, −1 for those with opposite ones, else 0."""
-        return parities(self.plan.nodes, {self.tangent: -1})
-
     def _emit_evaluate(
         self, builder: Any, constants: Any, table: Any, x: Any, value: Any, far: Any, signal: Any, first: Any, last: Any
     ) -> None:
@@ -341,7 +275,7 @@ class Evaluators(Patience):
             with alone:
                 each = vectors.each_ahead(lanes, partial(self._start, vectors, constants, place))
                 for (lane, kept), node in zip(each, self.signals, strict=False):
-                    left = [x for x in self._needed([node]) if x in self.left]
+                    left = [x for x in self.needed([node]) if x in self.left]
                     here = interpret(left, self._here(vectors, constants, kept), vectors.operators)
                     vectors.store(here[node], table.data, at(value, lane))
             with mixed, self._each(vectors, constants, first, last, LANES, place) as (lane, here):
@@ -379,10 +313,10 @@ class Evaluators(Patience):
         """Return a text that differs wherever the functions do."""
         nodes = {node: k for k, node in enumerate(self.plan.nodes)}
         lines = [(node.operator, node.value, [nodes[x] for x in node.operands]) for node in nodes]
-        roles = [[nodes[node] for node in role] for role in (self.inputs, self.constants, self.signals, self.shared)]
+        by_role = [[nodes[node] for node in role] for role in (self.inputs, self.constants, self.signals, self.shared)]
         dims = [[dim in node.dims for dim in self.plan.loops] for node in self.inputs]
         counted = [self.dims.index(dim) for dim in self.plan.loops]
-        return f"{SOURCE} {HALF} {lines} {roles} {dims} {counted} {PIECE in self.dims}"
+        return f"{SOURCE} {HALF} {lines} {by_role} {dims} {counted} {PIECE in self.dims}"
 
 
 def _number(builder: Any, array: Any, k: Any) -> Any:

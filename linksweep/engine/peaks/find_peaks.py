@@ -12,8 +12,8 @@ from linksweep.engine.blocks import block as new_block
 from linksweep.engine.kernel.machine_code import INTEGER, INTEGERS, ROW, TABLE
 from linksweep.engine.peaks import on_pieces, turns, zeros
 from linksweep.engine.peaks.brackets import BEYOND, BRACKET_ROWS, EVALUATIONS, PEAK, PEAK_FAR, PEAK_X
-from linksweep.engine.peaks.evaluators import PIECE, WIDTHS
 from linksweep.engine.peaks.laid_out import OF_DESIGNS, ON_PIECES, LaidOut, laid_out, over_blocks
+from linksweep.engine.peaks.roles import PIECE, WIDTHS
 from linksweep.engine.peaks.turns import PEAK_ANGLE
 from linksweep.engine.run import Fields, Sizes
 from linksweep.engine.trace.plan import Plan

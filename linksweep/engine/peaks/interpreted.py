@@ -2,33 +2,31 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from linksweep.engine.interpreter.evaluate import evaluate
 from linksweep.engine.peaks.lanewise import Values
-
-if TYPE_CHECKING:
-    from linksweep.engine.peaks.evaluators import Evaluators
+from linksweep.engine.peaks.roles import Roles
 
 
 class Interpreted:
     """The functions of evaluators without a kernel. Constants of a design are its widths and its parameters."""
 
-    def __init__(self, evaluators: Evaluators) -> None:
-        self.of = evaluators
+    def __init__(self, roles: Roles) -> None:
+        self.roles = roles
 
     def prepare(self, front: int, designs: int, sizes, parameters, parameter_at, constants: np.ndarray) -> None:
-        digit = dict(zip(self.of.dims, np.unravel_index(front, tuple(sizes)), strict=True))
-        size = dict(zip(self.of.dims, sizes, strict=True))
-        for k, node in enumerate(self.of.inputs):
+        digit = dict(zip(self.roles.dims, np.unravel_index(front, tuple(sizes)), strict=True))
+        size = dict(zip(self.roles.dims, sizes, strict=True))
+        for k, node in enumerate(self.roles.inputs):
             place = 0
-            for dim in (dim for dim in self.of.plan.loops if dim in node.dims):
+            for dim in (dim for dim in self.roles.plan.loops if dim in node.dims):
                 place = place * size[dim] + digit[dim]
             constants[2 + k] = parameters[parameter_at[k] + place]
         here = self._at(constants, np.zeros(1), 0.0)
-        constants[:2] = [np.asarray(here[node]).item() for node in self.of.constants[:2]]
+        constants[:2] = [np.asarray(here[node]).item() for node in self.roles.constants[:2]]
 
     def enter(self, front: int, piece: int, sizes, parameters, parameter_at, constants: np.ndarray) -> None:
         designs = np.prod(sizes[1:], dtype=int)
@@ -38,9 +36,9 @@ class Interpreted:
         """Do nothing: all is computed for each design."""
 
     def sample(self, constants: np.ndarray, x: np.ndarray, rows: np.ndarray) -> None:
-        (near, far), signals = x.reshape(2, -1), self.of.signals
-        places = near if self.of.anywhere else np.stack([near[1:-1], far[1:-1]])
-        half = far if self.of.anywhere else np.repeat([0.0, 1.0], places.shape[1])
+        (near, far), signals = x.reshape(2, -1), self.roles.signals
+        places = near if self.roles.anywhere else np.stack([near[1:-1], far[1:-1]])
+        half = far if self.roles.anywhere else np.repeat([0.0, 1.0], places.shape[1])
         values = self._at(constants, places.ravel(), half)
         for k, signal in enumerate(signals):
             rows[k : places.size * len(signals) : len(signals)] = np.ravel(values[signal])
@@ -48,16 +46,16 @@ class Interpreted:
     def evaluate(self, constants, table, x: int, value: int, far: int, signal: int, first: int, last: int) -> None:
         lanes = table[:, first:last]
         here = self._at(constants, lanes[x], lanes[far])
-        every = np.stack([np.broadcast_to(np.ravel(here[node]), last - first) for node in self.of.signals])
+        every = np.stack([np.broadcast_to(np.ravel(here[node]), last - first) for node in self.roles.signals])
         number = lanes[signal].astype(int) if signal >= 0 else np.arange(last)
         lanes[value] = every[number, np.arange(last - first)]  # np.choose takes 64 signals at most
 
     def _at(self, constants: np.ndarray, tangent: np.ndarray, far: Any) -> Values:
         """Return the values of all signals at places."""
-        plan, inputs, axes = self.of.plan, self.of.inputs, [1] * len(self.of.plan.loops)
+        plan, inputs, axes = self.roles.plan, self.roles.inputs, [1] * len(self.roles.plan.loops)
         values: Values = {
             node: np.full(axes, x) if node.dims else x for node, x in zip(inputs, constants[2:].tolist(), strict=True)
         }
-        places = {self.of.tangent: tangent, self.of.far: np.broadcast_to(far, tangent.shape)}
+        places = {self.roles.tangent: tangent, self.roles.far: np.broadcast_to(far, tangent.shape)}
         values |= {node: place.reshape([*axes, -1]) for node, place in places.items()}
         return evaluate(plan, values, dict.fromkeys(plan.loops, 1) | {plan.index: len(tangent)})

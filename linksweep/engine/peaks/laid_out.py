@@ -12,7 +12,8 @@ import numpy as np
 from linksweep.engine.kernel.machine_code import INTEGER, INTEGERS, ROW, TABLE
 from linksweep.engine.kernel.translate import translated
 from linksweep.engine.peaks import turns
-from linksweep.engine.peaks.evaluators import WIDTHS, Evaluators, Functions
+from linksweep.engine.peaks.evaluators import Evaluators, Functions
+from linksweep.engine.peaks.roles import WIDTHS
 from linksweep.engine.peaks.samples import EVENLY, HALF, grades
 from linksweep.engine.run import Fields, Sizes, flat, ordered
 from linksweep.engine.threads import over_threads

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from linksweep.engine.kernel.writer import Reduction
-from linksweep.engine.peaks.evaluators import WIDTHS
+from linksweep.engine.peaks.roles import WIDTHS
 from linksweep.engine.roots import roots
 from linksweep.engine.run import Field, reduce_rows
 from linksweep.engine.trace.plan import plan

@@ -15,7 +15,7 @@ import numpy as np
 
 from linksweep.engine.near_zero import dips, samples
 from linksweep.engine.near_zero.find import dips_and_zeros
-from linksweep.engine.peaks.evaluators import ANYWHERE, FAR, OF_HALF, TANGENT, WIDTHS
+from linksweep.engine.peaks.roles import ANYWHERE, FAR, OF_HALF, TANGENT, WIDTHS
 from linksweep.engine.quantity import Limit, Row, Table
 from linksweep.engine.run import Field, Fields, evaluate
 from linksweep.engine.trace.plan import Plan
