@@ -1,7 +1,8 @@
 """Integrate over the continuous revolution, by adaptive Gauss–Kronrod quadrature (7 and 15 points; QUADPACK's qk15).
 
-The revolution is cut at jumps and, more densely, about near-toggles; a piece is halved until its two rules agree. If
-they never do, the integrand grows so fast towards a pole that its integral is infinite. Angles at which a quantity is
+The revolution is cut at jumps and, more densely, about near-toggles; a piece is halved until its two rules agree, and
+its ends continue what lies between them: a kink beyond the outermost point would not show otherwise. If they never do,
+the integrand grows so fast towards a pole that its integral is infinite. Angles at which a quantity is
 not known (jammed, off the track) are left out of integrals, and their time out of means. The variable on an arc is x,
 with θ2 = middle + half·sin x, as in `linksweep.results.peak_search.arcs`.
 
@@ -23,8 +24,8 @@ import xarray as xr
 from linksweep.engine.run import Field
 from linksweep.results.peak_search.arcs import arc_ends, arcs, within
 from linksweep.results.peak_search.between import EVERYWHERE, PARTLY
-from linksweep.results.peak_search.groups import Group, assembled_groups, empty_over_all
-from linksweep.results.peak_search.paths import Part, Paths, turns
+from linksweep.results.peak_search.groups import Group, assembled_groups, different, empty_over_all
+from linksweep.results.peak_search.paths import QUARTER, Part, Paths, turns
 from linksweep.scene.pairs import Array, some_of
 from linksweep.scene.scene import Scene
 
@@ -47,6 +48,8 @@ LAST_DIGIT = 2.0**-44
 """Spacing of floating-point numbers at an angle of 360 [degree]."""
 LAST_DIGITS_OF_SPEED = 2.0**-50
 """Rounding error of a speed over the angle, relative to its largest value: of a few operations."""
+CLEAR = 0.05
+"""Distance in x from a toggle within which rounding of the samples nearest to it may pass for a kink."""
 POLE = 1e-3
 """Difference of the rules, relative to a piece where all digits of the angle are spent, that shows a pole in it."""
 ROUNDING = 1e-13
@@ -68,10 +71,28 @@ GAUSS = np.array([
     0.129484966168869693270611432679082, 0.279705391489276667901467771423780,
     0.381830050505118944950369775488975, 0.417959183673469387755102040816327,
 ])  # fmt: skip
-POINTS = np.concatenate([-NODES, NODES[-2::-1]])
-OUTER = np.concatenate([KRONROD, KRONROD[-2::-1]])
-INNER = np.zeros(15)
-INNER[1::2] = np.concatenate([GAUSS, GAUSS[-2::-1]])
+ENDMOST = 0.9999
+"""Point at either end of a piece that neither rule has."""
+POINTS = np.concatenate([[-ENDMOST], -NODES, NODES[-2::-1], [ENDMOST]])
+OUTER = np.concatenate([[0.0], KRONROD, KRONROD[-2::-1], [0.0]])
+INNER = np.zeros(17)
+INNER[2:-2:2] = np.concatenate([GAUSS, GAUSS[-2::-1]])
+
+
+def _beyond_polynomial(end: int) -> Array:
+    """Return the weights of the samples of a piece in the difference of the first or last one from the polynomial
+    through those of the rules."""
+    nodes, weights = POINTS[1:-1], np.zeros(len(POINTS))
+    for k, node in enumerate(nodes):
+        others = np.delete(nodes, k)
+        weights[1 + k] = -np.prod((POINTS[end] - others) / (node - others))
+    weights[end] = 1.0
+    return weights
+
+
+AT_START, AT_END = _beyond_polynomial(0), _beyond_polynomial(-1)
+KINKED = 0.5 * (1.0 - NODES[0])
+"""Area between a kink and the end of a piece that no rule sees, at most, per difference at the end."""
 
 
 class Pieces(NamedTuple):
@@ -97,12 +118,14 @@ class Integrand(NamedTuple):
 class Rules(NamedTuple):
     """Integrals (integrand, piece) by both rules: `outer` with 15 points, `inner` with 7.
 
-    `size` is the integral of the magnitude, `blur` the error that rounding causes: of the angles, their last digit
-    times the total variation of the integrand; of the rate of the angle, what its last digits change.
+    `missed` is what a kink beside an end may add; `size` is the integral of the magnitude, `blur` the error that rounding
+    causes: of the angles, their last digit times the total variation of the integrand; of the rate of the angle, what
+    its last digits change.
     """
 
     outer: Array
     inner: Array
+    missed: Array
     size: Array
     blur: Array
 
@@ -155,7 +178,7 @@ def integrals(scene: Any, integrands: Mapping[Key, Integrand], part: Part | None
     names = _names(tuple(integrands.values()))
     totals = {key: empty_over_all(scene, integrand.names) for key, integrand in integrands.items()}
     # whole turns last: an integral that designs share, such as the time of a cycle, is that of a whole turn
-    for kind, group in assembled_groups(scene, names, (PARTLY, EVERYWHERE)):
+    for kind, group in assembled_groups(scene, different(scene, names), (PARTLY, EVERYWHERE)):
         paths = arcs(group) if kind == PARTLY and arc_ends(group) else turns(group)
         paths = paths if part is None else within(paths, part, scene)
         _integrate(group, totals, integrands, paths)
@@ -218,7 +241,7 @@ def _disagree(rules: Rules, scale: Array, beside_toggles: bool) -> Array:
     than the plain difference asks for. A difference that rounding of the angles explains is accepted; beside a pole it
     makes the integral infinite.
     """
-    difference = np.abs(rules.outer - rules.inner)
+    difference = np.abs(rules.outer - rules.inner) + rules.missed
     relative = difference / scale
     # both: beside a pole one piece may be larger than all others together
     disagree = (difference > ROUNDING * rules.size) & (relative > TOLERANCE)
@@ -269,7 +292,16 @@ def _rules(
         # no matrix product: the order in which it sums, and so the last bit, depends on the number of pieces
         weighted = samples * OUTER, samples * INNER, np.abs(samples) * OUTER
         outer, inner, size = (products.sum(axis=-1) for products in weighted)
-    return Rules(outer, inner, size, blur)
+        at_ends = (np.abs((samples * end).sum(axis=-1)) for end in (AT_START, AT_END))
+        missed = KINKED * sum(map(np.where, _clear_of_toggles(paths, pieces), at_ends, (0.0, 0.0)))
+    return Rules(outer, inner, missed, size, blur)
+
+
+def _clear_of_toggles(paths: Paths, pieces: Pieces) -> tuple[Array, Array]:
+    """Return whether the start and the end of each piece lie so far from the ends of arcs that rounding spoils no
+    samples there."""
+    most = np.inf if paths.middle is None else QUARTER - CLEAR
+    return pieces.start > -most, pieces.end < most
 
 
 def _names(integrands: tuple[Integrand, ...]) -> tuple[str, ...]:

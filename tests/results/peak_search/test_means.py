@@ -199,3 +199,14 @@ def test_a_quantity_of_nothing_but_rounding_has_a_mean():
     means = ls.peaks(ls.Scene(machine, omega2=30.0), of=["Ms_rms", "Fs_rms"])
     assert float(means.Ms_rms) < 1e-15
     assert float(means.Fs_rms) == pytest.approx(1.0 * 0.04 * 30.0**2, rel=1e-13)
+
+
+def test_a_kink_just_inside_the_end_of_a_piece_of_quadrature():
+    """Lifting a crank's centre of gravity from below A to above it takes 2·m·g·d, in whichever direction gravity acts:
+    where the work begins moves past the ends of pieces, beyond the outermost points of their rules, too."""
+    mass, distance, aside = 1.5, 0.1, np.radians(np.linspace(0.0, 15.0, 301))
+    gravity = (xr.DataArray(9.81 * numbers, dims="aside") for numbers in (np.sin(aside), -np.cos(aside)))
+    massless = ls.Link(0.22, 0.0, 0.0), ls.Link(0.18, 0.0, 0.0)
+    lifted = ls.FourBar(ls.Link(0.08, mass, 1e-3, cg_distance=distance), *massless, ground=0.2)
+    work = ls.duty(ls.Scene(lifted, omega2=10.0, gravity=tuple(gravity))).work_fed
+    np.testing.assert_allclose(work, 2.0 * mass * 9.81 * distance, rtol=1e-10)
