@@ -22,12 +22,7 @@ import numpy as np
 from linksweep.engine.roots import roots
 from linksweep.engine.run import Field
 from linksweep.results.peak_search.between import EVERYWHERE
-from linksweep.results.peak_search.groups import (
-    Group,
-    assembled_groups,
-    empty_over_all,
-    with_assembly_signals,
-)
+from linksweep.results.peak_search.groups import Group, assembled_groups, different, empty_over_all, with_assembly
 from linksweep.scene.scene import Scene
 
 PER_TURN = 1440
@@ -77,10 +72,10 @@ def travel(scene: Scene, name: str, dwell: float) -> Travel:
     """Return the travel of a position as Fields over the design dims; NaN where it turns fully or has no revolution."""
     crank = scene.mechanism.parameters()[f"{scene.mechanism.roles[0]}_length"]
     names = (name, rate_of(name))
-    empty = empty_over_all(scene, with_assembly_signals(scene, (*names, "assembly")))
+    empty = empty_over_all(scene, with_assembly(scene, names))
     results = Travel(*(Field(empty.dims, empty.values.copy()) for _ in Travel._fields))
     turns = scene.table.quantity[name].units == "degree"
-    for _, group in assembled_groups(scene, names, (EVERYWHERE,)):
+    for _, group in assembled_groups(scene, different(scene, names), (EVERYWHERE,)):
         at = tuple(group.places[dim] for dim in empty.dims)
         with np.errstate(invalid="ignore", divide="ignore"):  # a link that turns fully, or stands still
             samples = _samples(group, names, turns)

@@ -34,7 +34,7 @@ from linksweep.results.compute import require
 from linksweep.results.cylinders.multi_cylinder import MultiCylinder, one_cylinder
 from linksweep.results.dataset import with_units
 from linksweep.results.peak_search.between import EVERYWHERE
-from linksweep.results.peak_search.groups import assembled_groups, empty, empty_over_all
+from linksweep.results.peak_search.groups import assembled_groups, different, empty, empty_over_all
 from linksweep.results.sweep import sweep
 from linksweep.scene.derivatives.differentiated import Differentiated, differentiated
 from linksweep.scene.derivatives.sloped import Sloped, slopes_of, value_of
@@ -172,7 +172,7 @@ def _arrays(
     shape = tuple(frame.sizes[dim] for dim in own)
     numbers = number.broadcast_like(frame).transpose(*frame.dims).values.reshape(math.prod(shape), -1)
     values = {name: np.full((*numbers.shape, angles.size if name == "speed" else 1), np.nan) for name in TEXTS}
-    for _, group in assembled_groups(steady, NAMES, (EVERYWHERE,)):
+    for _, group in assembled_groups(steady, different(steady, NAMES), (EVERYWHERE,)):
         at = np.ravel_multi_index([group.places[dim] for dim in own], shape) if own else np.zeros(1, dtype=int)
         turning = Turning.of(group.some(np.arange(len(at))))
         for k in range(numbers.shape[1]):
@@ -251,7 +251,7 @@ def flywheel_slopes(
     own = differentiated(replace(scene, alpha2=0.0), NAMES[:2], paths)
     names = tuple(derivative_of(name, path) for path in paths for name in NAMES[:2])
     fields = {path: empty_over_all(own, (*NAMES, *names)) for path in paths}
-    for _, group in assembled_groups(own, (*NAMES, *names), (EVERYWHERE,)):
+    for _, group in assembled_groups(own, different(own, (*NAMES, *names)), (EVERYWHERE,)):
         slopes = _slopes(group, own, names, 0.5 * fluctuation)
         for path, field in fields.items():
             field.values[tuple(group.places[dim] for dim in field.dims)] = (

@@ -23,7 +23,7 @@ from linksweep.results.over_time import mean_over_time
 from linksweep.results.peak_search.along_paths import PathsOf, angle_in_period, highest
 from linksweep.results.peak_search.arcs import arcs_within
 from linksweep.results.peak_search.exact import paths_of
-from linksweep.results.peak_search.groups import Group, assembled_groups, empty_over_all
+from linksweep.results.peak_search.groups import Group, assembled_groups, different, empty_over_all
 from linksweep.results.peak_search.paths import Part, Paths, reversals
 from linksweep.results.peak_search.singular.poles import may_have_poles, poles
 from linksweep.results.sweep import sweep
@@ -215,7 +215,7 @@ def _least_margin(
     designs = margin.isel({index: 0}, drop=True)
     own = empty_over_all(scene, signals).dims
     least, at = np.full((2, designs.size), np.nan)
-    for kind, group in assembled_groups(scene, signals):
+    for kind, group in assembled_groups(scene, different(scene, signals)):
         loaded, place = _loaded(group, signals, drive, designs, own)
         searches: tuple[PathsOf, ...] = paths_of(scene, kind) if part is None else (partial(arcs_within, part),)
         for paths in (loaded.along(paths_of_group(group)) for paths_of_group in searches):

@@ -135,7 +135,7 @@ def _histories(scene: Scene, names: tuple[str, str], place: dict[str, Array]) ->
     """Yield the number of each design that moves at all angles, and the turning points of its stress."""
     sizes, every = scene.at_one_angle.inputs.sizes, np.arange(len(place["fibre"]))
     numbers = Field(tuple(sizes), every.reshape(tuple(sizes.values())))
-    for _, group in assembled_groups(scene, names, (EVERYWHERE,), designs=every):
+    for _, group in assembled_groups(scene, every, (EVERYWHERE,)):
         designs = flat_index(numbers, group.places, len(group.designs))
 
         def stress_at(row: Array, angle: Array, group: Group = group, designs: Array = designs) -> Array:

@@ -25,7 +25,15 @@ from linksweep.results.peak_search.along_paths import (
 )
 from linksweep.results.peak_search.arcs import arc_ends
 from linksweep.results.peak_search.between import EVERYWHERE, NEVER
-from linksweep.results.peak_search.groups import Group, assembled_groups, empty, empty_over_all, groups
+from linksweep.results.peak_search.groups import (
+    AT_ONCE,
+    Group,
+    assembled_groups,
+    different,
+    empty,
+    empty_over_all,
+    groups,
+)
 from linksweep.results.peak_search.paths import (
     AT_JUMP,
     Paths,
@@ -93,10 +101,14 @@ class Cylinders(NamedTuple):
 
 
 @groups.register
-def _groups(machine: MultiCylinder, names: tuple[str, ...]) -> Iterator[Cylinders]:
-    sources = sources_of(names, machine.rules)
-    for each in zip(*(groups(scene, sources) for scene in machine.cylinders), strict=True):
+def _groups(machine: MultiCylinder, designs: Array, at_once: int = AT_ONCE) -> Iterator[Cylinders]:
+    for each in zip(*(groups(scene, designs, at_once) for scene in machine.cylinders), strict=True):
         yield Cylinders(machine, each)
+
+
+@different.register
+def _different(machine: MultiCylinder, names: tuple[str, ...]) -> Array:
+    return different(machine.cylinders[0], sources_of(names, machine.rules))
 
 
 @empty.register
@@ -146,7 +158,7 @@ def exact_peaks_of_sums(machine: MultiCylinder, signals: tuple[str, ...]) -> dic
     """Return the peak of each sum over the continuous cycle, for every design; NaN where it has none."""
     peaks = {signal: nothing(field) for signal, field in empty(machine, signals).items()}
     paths: tuple[PathsOf, ...] = (turns, about_approaches) if machine.engine.approaches() else (turns,)
-    for _, group in assembled_groups(machine, signals):
+    for _, group in assembled_groups(machine, different(machine, signals)):
         follow(group, peaks, paths)
         if may_have_poles(machine.engine, signals):
             raise_to_poles(group, peaks)

@@ -22,8 +22,8 @@ import numpy as np
 
 from linksweep.base.degrees import signed_distance
 from linksweep.base.frozen import cached_beside
-from linksweep.engine.peaks.evaluators import FAR, TANGENT, WIDTHS
 from linksweep.engine.peaks.find_peaks import Peaks, find_peaks
+from linksweep.engine.peaks.roles import FAR, TANGENT, WIDTHS
 from linksweep.engine.quantity import regardless_of_jams
 from linksweep.engine.run import Field, Sizes
 from linksweep.engine.trace.plan import Plan, plan
@@ -85,7 +85,7 @@ def peaks_within(
         from_middle = signed_distance(angle.values, middle, scene.period)
         ends = [from_middle < ASIDE - half, from_middle > half - ASIDE]
         angle.values[...] = np.select(ends, part, middle + from_middle)
-    for group in groups(scene, signals, designs):
+    for group in groups(scene, different(scene, signals) if designs is None else designs):
         _on_own_sides(group, peaks, part[0])
     return peaks
 
@@ -101,10 +101,10 @@ def _raise_to_poles(
     scene: Scene, peaks: dict[str, SignalPeak], part: Part | None = None, designs: Array | None = None
 ) -> None:
     if may_have_poles(scene, tuple(peaks)):
-        designs = different(scene, (*peaks, "assembly")) if designs is None else designs
+        designs = different(scene, tuple(peaks)) if designs is None else designs
         if scene.table.limits is None:
             designs = designs_with_candidates(scene, designs, tuple(peaks))
-        for _, group in assembled_groups(scene, tuple(peaks), designs=designs, at_once=FEW_SAMPLES_AT_ONCE):
+        for _, group in assembled_groups(scene, designs, at_once=FEW_SAMPLES_AT_ONCE):
             raise_to_poles(group, peaks, part)
             clear_of_rounding_errors(group, peaks, part)
 
@@ -129,7 +129,7 @@ def _by_paths(
 
 def _follow_on_pieces(scene: Scene, peaks: dict[str, SignalPeak]) -> Array:
     """Write the peaks of designs of which pieces of their turns or arcs are enough; return the others."""
-    every = different(scene, (*peaks, "assembly"))
+    every = different(scene, tuple(peaks))
     designs = with_known_directions(scene, every)
     assembly = all_at_once(scene, designs).assembly()
     turning = designs_without_jams(scene, designs[assembly == EVERYWHERE])
@@ -144,7 +144,8 @@ def _follow_all(
 ) -> None:
     """Search along these paths of designs, or along those for each design's kind of assembly; without `designs`, of
     all that differ."""
-    for kind, group in assembled_groups(scene, tuple(peaks), designs=designs) if peaks else ():
+    designs = different(scene, tuple(peaks)) if designs is None else designs
+    for kind, group in assembled_groups(scene, designs) if peaks else ():
         follow(group, peaks, paths or paths_of(scene, kind))
         _on_own_sides(group, peaks)
 
@@ -155,7 +156,7 @@ def _fused_first(scene: Scene, signals: tuple[str, ...], assembly: Field) -> dic
     turning = _turning(scene, signals)
     constant = tuple(signal for signal in signals if signal not in turning)
     whole, partly = (_designs_of(scene, assembly, kind) for kind in (EVERYWHERE, PARTLY))
-    on_arcs = partly if _arcs_known(scene, (*signals, "assembly"), partly) else partly[:0]
+    on_arcs = partly if _arcs_known(scene, partly) else partly[:0]
     on_turns = whole if len(on_arcs) == len(partly) else np.union1d(whole, partly)
     peaks = _constants(scene, constant, on_turns) | _of_turns(scene, turning, on_turns, whole)
     if scene.approaches():
@@ -186,7 +187,7 @@ def _of_turns(scene: Scene, signals: tuple[str, ...], designs: Array, whole: Arr
 
 def _follow_windows(scene: Scene, peaks: dict[str, SignalPeak], designs: Array, windows: PathsOf) -> None:
     """Search along windows of these designs, and replace the peaks that are exceeded."""
-    for group in groups(scene, (*peaks, "assembly"), designs, FEW_SAMPLES_AT_ONCE) if peaks else ():
+    for group in groups(scene, designs, FEW_SAMPLES_AT_ONCE) if peaks else ():
         follow(group, peaks, (windows,))
         _on_own_sides(group, peaks)
 
@@ -215,9 +216,9 @@ def _designs_of(scene: Scene, assembly: Field, kind: float) -> Array:
     return np.flatnonzero(kinds == kind)
 
 
-def _arcs_known(scene: Scene, names: tuple[str, ...], designs: Array) -> bool:
+def _arcs_known(scene: Scene, designs: Array) -> bool:
     """Return whether the arcs of designs that move over part of a turn are known in closed form."""
-    return len(designs) > 0 and any(arc_ends(group) for group in groups(scene, names, designs[:1]))
+    return len(designs) > 0 and any(arc_ends(group) for group in groups(scene, designs[:1]))
 
 
 def peaks_where(good: Field, peaks: dict[str, SignalPeak]) -> dict[str, SignalPeak]:
@@ -264,7 +265,7 @@ def _fused(scene: Scene, signals: tuple[str, ...], designs: Array, smooth: bool)
         return {signal: peak for some in results for signal, peak in _at_angles(scene, some).items()}
     peaks = {signal: nothing(field) for signal, field in empty(scene, signals).items()}
     places = ((TANGENT, (scene.mechanism.index, ONE)), (FAR, (scene.mechanism.index,)))
-    for group in groups(scene, signals, designs, AT_ONCE):
+    for group in groups(scene, designs, AT_ONCE):
         rows, middle = np.arange(len(group.designs)), group.number(scene.mechanism.near_toggle_angle)
         names, table = (*signals, *WIDTHS), scene.table.between_samples
         request, inputs_of_group = group.one_by_one(table, names, rows, {}, places)

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from functools import singledispatch
-from itertools import chain
 from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 
-from linksweep.engine.peaks.evaluators import WIDTHS
+from linksweep.engine.peaks.roles import WIDTHS
 from linksweep.engine.quantity import Table
 from linksweep.engine.run import Field, Fields, evaluate
 from linksweep.engine.trace.plan import InputForms, Plan, plan
@@ -101,56 +100,41 @@ def all_at_once(scene: Scene, designs: Array) -> Group:
 
 
 @singledispatch
-def groups(
-    scene: Any,
-    names: tuple[str, ...],
-    designs: Array | None = None,
-    at_once: int = AT_ONCE,
-    own_at_once: int = OWN_AT_ONCE,
-) -> Iterator[Any]:
-    """Yield designs in groups small enough to be searched together.
-
-    Without `designs`, one design stands for all that share the values of these quantities.
-    """
+def groups(scene: Any, designs: Array, at_once: int = AT_ONCE, own_at_once: int = OWN_AT_ONCE) -> Iterator[Any]:
+    """Yield designs in groups small enough to be searched together."""
     inputs, index = scene.at_one_angle.inputs, scene.mechanism.index
     own = any(index in field.dims and len(field.dims) > 1 for field in inputs.fields.values())
-    chosen = different(scene, names) if designs is None else designs
     turns = round(scene.period_of_motion / scene.mechanism.period)
     step = max(1, (min(at_once, own_at_once) if own else at_once) // turns)
-    limits = _limits(scene, chosen)  # of all groups at once: to find them, all numbers of all designs are read
-    for first in range(0, len(chosen), step):
+    limits = _limits(scene, designs)  # of all groups at once: to find them, all numbers of all designs are read
+    for first in range(0, len(designs), step):
         part = slice(first, first + step)
-        places = places_of(inputs.sizes, chosen[part])
-        group = _with_own_loads(scene, places) if own else Group(scene, chosen[part], places, scene.quick.angles)
+        places = places_of(inputs.sizes, designs[part])
+        group = _with_own_loads(scene, places) if own else Group(scene, designs[part], places, scene.quick.angles)
         yield group._replace(limits=limits and limits.some(part))
 
 
 def assembled_groups(
-    scene: Any,
-    names: tuple[str, ...],
-    kinds: tuple[float, ...] = (EVERYWHERE, PARTLY),
-    designs: Array | None = None,
-    at_once: int = AT_ONCE,
+    scene: Any, designs: Array, kinds: tuple[float, ...] = (EVERYWHERE, PARTLY), at_once: int = AT_ONCE
 ) -> Iterator[tuple[float, Any]]:
-    """Yield the designs of each of these kinds of assembly, with the kind, in groups."""
-    chosen = () if designs is None else (designs, at_once)
-    for group in groups(scene, (*names, "assembly"), *chosen):
+    """Yield those designs that have one of these kinds of assembly, with the kind, in groups."""
+    for group in groups(scene, designs, at_once):
         assembly = group.assembly()
         for kind in kinds:
             if np.any(assembly == kind):
                 yield kind, group.some(assembly == kind)
 
 
-def different(scene: Scene, names: tuple[str, ...]) -> Array:
-    """Return one design for all that share the values of these quantities; the assembly is not always one of them."""
-    return different_designs(scene, with_assembly_signals(scene, names))
+@singledispatch
+def different(scene: Any, names: tuple[str, ...]) -> Array:
+    """Return one design for all that share the values of these quantities, and where they close."""
+    return different_designs(scene, with_assembly(scene, names))
 
 
-def with_assembly_signals(scene: Scene, names: tuple[str, ...]) -> tuple[str, ...]:
-    """Return names of quantities, those of the limits' signals in place of an assembly that is no quantity."""
+def with_assembly(scene: Scene, names: tuple[str, ...]) -> tuple[str, ...]:
+    """Return names of quantities and that of the assembly, or those of the limits' signals where it is no quantity."""
     limits = scene.table.limits
-    known = {} if limits is None else {"assembly": signals_of(limits)}
-    return tuple(chain.from_iterable(known.get(name, (name,)) for name in names))
+    return (*names, *(("assembly",) if limits is None else signals_of(limits)))
 
 
 def _limits(scene: Scene, designs: Array) -> Limits | None:

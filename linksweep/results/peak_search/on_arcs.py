@@ -82,7 +82,7 @@ def follow_arcs(scene: Scene, designs: Array, peaks: dict[str, SignalPeak]) -> A
     sound, signals = designs if _jams_end_arcs(scene) else designs_without_jams(scene, designs), tuple(peaks)
     left = [np.setdiff1d(designs, sound, assume_unique=True)]
     at_once = AT_ONCE if scene.steady else CHANGING_AT_ONCE
-    for group in groups(scene, signals, sound, at_once, at_once):
+    for group in groups(scene, sound, at_once, at_once):
         every = _arcs(group)
         arcs = some_of(every, every.length > 0.0)
         if not len(arcs.row):

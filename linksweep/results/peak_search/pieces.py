@@ -16,8 +16,8 @@ from typing import NamedTuple
 import numpy as np
 
 from linksweep.base.degrees import signed_distance
-from linksweep.engine.peaks.evaluators import ALONG, END, FAR, PIECE, TANGENT, WIDTHS
 from linksweep.engine.peaks.find_peaks import find_peaks_on_pieces, zeros_of_pieces
+from linksweep.engine.peaks.roles import ALONG, END, FAR, PIECE, TANGENT, WIDTHS
 from linksweep.engine.peaks.samples import FEW, HALF
 from linksweep.engine.quantity import Row, Table
 from linksweep.engine.run import Field, Fields, evaluate
@@ -125,7 +125,7 @@ def known_on_pieces(scene: Scene) -> bool:
 def follow_pieces(scene: Scene, designs: Array, peaks: dict[str, SignalPeak]) -> None:
     """Write the peaks of designs, from a search of their pieces."""
     at_once = AT_ONCE if scene.steady else CHANGING_AT_ONCE
-    for whole in groups(scene, tuple(peaks), designs, at_once, at_once) if peaks else ():
+    for whole in groups(scene, designs, at_once, at_once) if peaks else ():
         for half, group in _by_samples(whole):
             highest = highest_on_pieces(group, _pieces(group, half), tuple(peaks), half)
             for signal, numbers in highest.items():

@@ -90,7 +90,7 @@ def _known(scene: Scene, signals: tuple[str, ...]) -> tuple[str, ...]:
 def _by_assembly(scene: Scene, signals: tuple[str, ...], designs: Array) -> Iterator[tuple[Array, float, Group]]:
     """Yield these designs in groups of one kind of assembly that move, with their rows and the kind."""
     first = 0
-    for group in groups(scene, signals, designs):
+    for group in groups(scene, designs):
         rows = first + np.arange(len(group.designs))
         first += len(rows)
         assembly = group.assembly()

@@ -6,7 +6,7 @@ import xarray as xr
 
 import linksweep as ls
 from linksweep.results.peak_search.approaches import approaches
-from linksweep.results.peak_search.groups import groups
+from linksweep.results.peak_search.groups import different, groups
 
 MACHINE = ls.FourBar(
     ls.Link(0.11, 0.13, 0.02, 0.01, -120.0),
@@ -94,7 +94,7 @@ def test_approaches_on_the_crank_are_those_of_a_point_on_a_circle():
     """Distance √((ρ − R)² + 4ρR·sin²(Δ/2)): least, |ρ − R|, in line, and the width there |ρ − R|/ρ."""
     distance = xr.DataArray([1e-3, 1e-4, 1e-6], dims="design")
     scene = braked(distance)
-    (group,) = groups(scene, ("F12", "assembly"))
+    (group,) = groups(scene, different(scene, ("F12",)))
     angles = np.tile(np.arange(0.0, 360.0, 5.0), (3, 1))
     close = approaches(group, angles)
     np.testing.assert_array_equal(close.row, [0, 1, 2])

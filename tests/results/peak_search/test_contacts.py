@@ -55,7 +55,7 @@ def shaper(friction=0.3, pivot=(0.0, -0.2), angle=0.0):
 def test_a_contact_bears_nothing_where_the_force_lies_on_the_edge_of_the_others_cone():
     """In a scotch yoke, P + m r ω² cos θ ± μ V = 0 for the slot, V ± μ' (P + m r ω² cos θ) = 0 for the guide."""
     along, across = 10.0, -60.0
-    (group,) = groups(yoke(0.4, 0.9, (along, across)), ("status",))
+    (group,) = groups(yoke(0.4, 0.9, (along, across)), np.array([0]))
     shares = np.array([0.4, -0.4, 1.0 / 0.9, -1.0 / 0.9]) * across
     angles = np.degrees(np.arccos(-(along + shares) / INERTIA))
     turns_round = [0.0, 90.0, 180.0, 270.0]

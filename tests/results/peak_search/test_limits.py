@@ -299,7 +299,7 @@ def test_limits_of_all_groups_are_looked_up_once():
     every = limits_of(scene.unloaded)[1]
     before = limits_of.cache_info().hits
     designs = np.arange(0, 150, 2)[::-1]
-    parts = list(groups(scene, ("T12",), designs, at_once=20))
+    parts = list(groups(scene, designs, at_once=20))
     assert [len(group.designs) for group in parts] == [20, 20, 20, 15]
     assert limits_of.cache_info().hits == before + 1
     for group in parts:

@@ -84,7 +84,7 @@ def test_friction_changes_no_bit_and_no_sample_of_a_motion(scene, motion):
 
 def test_the_slider_turns_round_and_the_guide_bears_nothing_only_at_ends_of_pieces():
     scene = engines()
-    (group,) = groups(scene, ("T12",), np.arange(DESIGNS))
+    (group,) = groups(scene, np.arange(DESIGNS))
     every = pieces._pieces(group, HALF)
     row, nth = np.nonzero(every.exist)
     start, end, directions = every.start[row, nth], every.end[row, nth], every.directions[:, row, nth]

@@ -58,7 +58,7 @@ def jammed_designs(scene: Scene) -> Field:
     known = every.some(np.flatnonzero(same))
     row = np.arange(len(known.designs))
     of_groups = [(known, _jammed_place(known, row, np.full(len(row), OFF_ROUND)) != FREE)]
-    for group in groups(scene, STATUS, every.designs[~same]):
+    for group in groups(scene, every.designs[~same]):
         pieces = _pieces(group)
         of_groups.append((group, np.bincount(pieces.row, pieces.place != FREE, len(group.designs)) > 0))
     for group, values in of_groups:
@@ -77,7 +77,7 @@ def jam_tables(scene: Scene) -> tuple[tuple[str, ...], Array, Array, Array]:
     """Return the design dims of jams, and tables (design dims…, jam) of their starts, ends and places; NaN for none."""
     dims, values = empty_over_all(scene, STATUS)
     parts = [Jams(*(np.empty(0, dtype=kind) for kind in (int, float, float, int)))]
-    for group in groups(scene, STATUS):
+    for group in groups(scene, different(scene, STATUS)):
         jams = _jams(group)
         places = tuple(group.places[dim][jams.row] for dim in dims)
         parts.append(jams._replace(row=np.ravel_multi_index(places, values.shape) if dims else jams.row))
