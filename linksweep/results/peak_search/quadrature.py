@@ -118,9 +118,9 @@ class Integrand(NamedTuple):
 class Rules(NamedTuple):
     """Integrals (integrand, piece) by both rules: `outer` with 15 points, `inner` with 7.
 
-    `missed` is what a kink beside an end may add; `size` is the integral of the magnitude, `blur` the error that rounding
-    causes: of the angles, their last digit times the total variation of the integrand; of the rate of the angle, what
-    its last digits change.
+    `missed` is what a kink beside an end may add; `size` is the integral of the magnitude, `blur` the error that
+    rounding causes: of the angles, their last digit times the total variation of the integrand; of the rate of the
+    angle, what its last digits change.
     """
 
     outer: Array
