@@ -43,10 +43,11 @@ def peaks(
         Scene of any number of designs. Quantities of several cylinders are those of `MultiCylinder.sweep`, and the pin
         forces of each cylinder, "F32" and the like, over the dim `cylinder`.
     of : str or iterable of str, default None
-        Names of quantities; "F32_mean", "T12_rms" give mean and root mean square over time, "F32_bound" how much larger
-        the peak could be than the one returned (inf where a function changes too quickly to be followed), "F32_samples"
-        how many crank angles were evaluated. None for the forces of all pins and slides (of a linkage's F16n and F16t
-        their sum F16), the moments of slides between links, and the drive's torque or force.
+        Names of quantities, or of their peaks, such as "F32_peak"; "F32_mean", "T12_rms" give mean and root mean square
+        over time, "F32_bound" how much larger the peak could be than the one returned (inf where a function changes too
+        quickly to be followed), "F32_samples" how many crank angles were evaluated. None for the forces of all pins and
+        slides (of a linkage's F16n and F16t their sum F16), the moments of slides between links, and the drive's torque
+        or force.
     theta2 : int or array_like, default None
         Count of crank angles, or angles [degree]: the largest of these samples is returned instead.
     theta : int or array_like, default None

@@ -46,7 +46,7 @@ from linksweep.scene.grid import in_order
 from linksweep.scene.pairs import changes, flat_index
 from linksweep.scene.scene import Scene
 
-SUMMARIES = ("mean", "rms", "bound", "samples")
+SUMMARIES, EXTREMES = ("mean", "rms", "bound", "samples"), ("peak", "max", "min")
 STATUS_ANGLES = 720
 """Angles of a turn at which the status is computed, if the mechanism's numbers do not show that it is always ok."""
 AT_END = ("inside", "first", "last", "no_peak")
@@ -121,17 +121,22 @@ def _at_ends(variables: Mapping[str, xr.Variable], part: Part) -> dict[str, xr.V
 def parsed_requests(
     quantities: Mapping[str, Quantity], names: Iterable[str], problems_of: Callable[[str], list[str]]
 ) -> list[Request]:
-    """Return the requests that names such as "F32", "T12_mean" state; raise ValueError for other names."""
+    """Return the requests that names such as "F32", "F32_peak", "T12_mean" state; raise ValueError for other names."""
     requests, problems = [], []
     for name in names:
         stem, _, ending = name.rpartition("_")
-        stem, ending = (stem, ending) if stem in quantities and ending in SUMMARIES else (name, "peak")
+        stem, ending = (stem, ending) if stem in quantities and ending in _endings(quantities[stem]) else (name, "peak")
         if stem not in quantities or stem == "cond":
             problems += problems_of(name)
         else:
             requests.append(_request(quantities[stem], ending))
     refuse(problems)
-    return requests
+    return list(dict.fromkeys(requests))
+
+
+def _endings(quantity: Quantity) -> tuple[str, ...]:
+    """Return what the name of a result may end in; a name that ends in an extreme stands for all of the quantity's."""
+    return (*SUMMARIES, "peak") if quantity.squared else (*SUMMARIES, *EXTREMES)
 
 
 @cached_beside
@@ -151,6 +156,7 @@ def _request(quantity: Quantity, summary: str) -> Request:
         return Request(quantity, summary, powers=((name, 1),))
     if summary == "rms":
         return Request(quantity, summary, powers=((squared, 1) if squared else (name, 2),))
+    summary = "peak" if summary in EXTREMES else summary
     return Request(quantity, summary, signals=(squared,) if squared else (name, opposite_of(name)))
 
 

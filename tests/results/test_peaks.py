@@ -210,6 +210,14 @@ def test_means_against_work_and_against_the_sweep():
 # -------------------------------------------------------------------------------- names, dims, status
 
 
+def test_the_name_of_a_peak_stands_for_its_quantity():
+    press = ls.example("press")
+    peaks = ls.peaks(press, of=["F32_peak", "T12_min", "T12", "T12_max"])
+    xr.testing.assert_equal(peaks, ls.peaks(press, of=["F32", "T12"]))
+    with pytest.raises(ValueError, match="nothing is named 'F32_max'"):  # a magnitude has a peak alone
+        ls.peaks(press, of="F32_max")
+
+
 def test_names_units_and_words():
     peaks = ls.peaks(ls.example("press"))
     pins = [f"{name}_{what}" for name in FORCES for what in ("peak", "peak_at")]
