@@ -11,13 +11,17 @@ import numpy as np
 import xarray as xr
 
 from linksweep.base.validate import quote
+from linksweep.chains.rows.beams import SECTION
 from linksweep.mechanisms import Mechanism
 from linksweep.scene.storable import label_problem, name_problem
 
 ANGLE = re.compile("(theta|θ)2?(deg|degrees?)?")
 """Names that probably mean the index, without signs and spaces."""
-TABLES = ("status", "arc", "toggle", "equation", "unknown", "spline")
-"""Names of variables and dims in results of `sweep`, `check` and `system` besides the quantities."""
+RESULTS = (
+    "status", "arc", "toggle", "spline", "equation", "unknown", SECTION, "pin", "main", "cylinder", "frame", "source",
+    "balance", "order", "parameter", "limit", "link", "plane", "criterion", "load_class", "step", "candidate",
+)  # fmt: skip
+"""Names of variables and dims in results besides the quantities."""
 
 Arrays = dict[str, xr.DataArray]
 """DataArrays by the path of the parameter."""
@@ -60,7 +64,7 @@ def dimension_problems(arrays: Arrays, index: str, quantities: Collection[str]) 
     for dim, sharing in _by_dim(arrays).items():
         if dim == index:
             continue
-        if name_problems := list(_name_problems(dim, index, sharing, arrays, {*quantities, *TABLES})):
+        if name_problems := list(_name_problems(dim, index, sharing, arrays, {*quantities, *RESULTS})):
             problems += name_problems
         else:
             problems += [*_length_problems(dim, sharing), *_label_problems(dim, sharing, arrays)]
@@ -96,7 +100,7 @@ def _name_problems(dim: object, index: str, sharing: Arrays, arrays: Arrays, res
         yield f"{path} has a dimension {quote(dim)}: {problem}; rename it"
     elif ANGLE.fullmatch(re.sub(r"[\W_]", "", unicodedata.normalize("NFKC", str(dim)).casefold())):
         yield f'{path} has a dimension "{dim}": rename it; did you mean "{index}"?'
-    elif dim in results:
+    elif dim in results and [dim, *sharing] != [SECTION, SECTION]:  # `section` itself lies along that dim
         yield f'{path} has a dimension "{dim}": that is the name of a result; rename it'
     elif dim in arrays and arrays[dim].dims != (dim,):
         yield f'{path} has a dimension "{dim}": that is the name of another parameter; rename it'

@@ -104,6 +104,17 @@ def test_pint_xarray_takes_every_result(results):
 
 
 @pytest.mark.long
+def test_no_design_lies_along_a_dim_that_a_result_has(results):
+    """Arithmetic along both would take the diagonal; screening alone refuses scenes of many designs."""
+    dims = {str(dim) for name, result in results.items() if name != "screen" for dim in result.dims}
+    for dim in (dims | {"section", "cylinder", "main"}) - {"theta2", "branch", "design"}:
+        with pytest.raises(
+            ValueError, match=f'omega2 has a dimension "{dim}": that is the name of a result; rename it'
+        ):
+            replace(PRESS, omega2=xr.DataArray([10.0, 20.0], dims=dim))
+
+
+@pytest.mark.long
 def test_every_file_passes_a_cf_checker(results, tmp_path):
     """IOOS's compliance-checker, test cf:1.11.
 

@@ -30,7 +30,7 @@ from linksweep.scene.scene import Scene
 
 SAMPLES = 24
 """Angles of the cycle whose integrals are taken, which do not depend on it."""
-NONE = "none"
+NONE, SIZE = "none", "_size"
 TEXTS = {
     "required_capacity": ("N", "basic dynamic load rating C that the life asks for"),
     "required_static_capacity": ("N", "basic static load rating C0 that the static safety asks for"),
@@ -162,10 +162,10 @@ def _first(
     known: list[DeepGroove], required: xr.DataArray, required_static: xr.DataArray, bores: Any, outsides: Any
 ) -> xr.DataArray:
     """Return the place of the first bearing that suffices, −1 where none does."""
-    sizes = {name: xr.DataArray([getattr(one, name) for one in known], dims="size") for name in DeepGroove._fields[2:]}
+    sizes = {name: xr.DataArray([getattr(one, name) for one in known], dims=SIZE) for name in DeepGroove._fields[2:]}
     enough = (sizes["capacity"] >= required) & (sizes["static_capacity"] >= required_static)
     enough = enough & (sizes["bore"] >= bores) & (sizes["outside"] <= outsides)
-    return xr.where(enough.any("size"), enough.argmax("size"), -1)
+    return xr.where(enough.any(SIZE), enough.argmax(SIZE), -1)
 
 
 def _of_chosen(

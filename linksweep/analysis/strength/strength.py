@@ -28,8 +28,8 @@ from linksweep.scene.scene import Scene
 
 FIBRES, ENDS = ("left", "right"), ("max", "min")
 PLANES = ("motion", "across")
-PLACE = "place_on_link"
-"""Dim of the sections at which peaks are computed."""
+PLACE, FIBRE, END = "_place", "_fibre", "_end"
+"""Dims of the sections at which peaks are computed, and of the fibres and the extremes of their stress."""
 FINE, WITHIN = 15, 1e-9
 """Sections between the neighbours of the worst of the others, and their least share from the pins at the ends."""
 FACTOR = Rule("dimensionless", above=0.0)
@@ -156,7 +156,7 @@ class _Link:
     def results(self, factors: list[Number]) -> dict[str, Any]:
         """Return the results of the link by name, and its status."""
         coarse = self._peaks(*self._sections())
-        fine = [self._about(rank) for rank in (self._size(coarse).max(("fibre", "end")), -self._goodman(coarse))]
+        fine = [self._about(rank) for rank in (self._size(coarse).max((FIBRE, END)), -self._goodman(coarse))]
         close = self._peaks(_in_a_row(fine), xr.DataArray(1.0))
         ds = xr.Dataset({name: _in_a_row([coarse[name], close[name]]) for name in coarse if name != "status"})
         status = coarse["status"]
@@ -193,22 +193,22 @@ class _Link:
         return xr.Dataset(whole).assign(status=ds["status"])
 
     def _of_fibres(self, ds: xr.Dataset, ends: tuple[str, ...]) -> xr.DataArray:
-        """Return extremes of both fibres' stress, or their angles, over the dims `fibre` and `end`."""
-        rows = (joined([ds[f"{name}_{end}"] for name in self.names], "fibre", FIBRES) for end in ends)
-        return joined(rows, "end", ENDS)
+        """Return extremes of both fibres' stress, or their angles, over the dims of fibres and extremes."""
+        rows = (joined([ds[f"{name}_{end}"] for name in self.names], FIBRE, FIBRES) for end in ends)
+        return joined(rows, END, ENDS)
 
     def _size(self, ds: xr.Dataset) -> xr.DataArray:
         return abs(ds["stress"])
 
     def _cycle(self, ds: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray]:
         """Return mean and amplitude of both fibres' stress."""
-        largest, least = (ds["stress"].isel(end=k) for k in range(2))
+        largest, least = (ds["stress"].isel({END: k}) for k in range(2))
         return mean_and_amplitude(largest, least)
 
     def _goodman(self, ds: xr.Dataset) -> xr.DataArray:
         """Return the safety of each section by Goodman."""
         strengths = self.material.endurance, self.material.tensile_strength
-        return fatigue_safety(*self._cycle(ds), *strengths).min("fibre")
+        return fatigue_safety(*self._cycle(ds), *strengths).min(FIBRE)
 
     def _stress(self, ds: xr.Dataset) -> dict[str, xr.DataArray]:
         """Return the largest stress, its place and its angle."""
@@ -223,7 +223,7 @@ class _Link:
         steel = self.material
         goodman = fatigue_safety(mean, amplitude, steel.endurance, steel.tensile_strength)
         soderberg = fatigue_safety(mean, amplitude, steel.endurance, steel.yield_strength)
-        fibre = xr.DataArray(np.arange(len(FIBRES)), dims="fibre")
+        fibre = xr.DataArray(np.arange(len(FIBRES)), dims=FIBRE)
         places = mean, amplitude, ds["share"], ds["factor"], fibre
         with np.errstate(divide="ignore"):
             danger, mean, amplitude, share, factor, fibre = _at_largest(1.0 / goodman, *places)
@@ -256,7 +256,7 @@ class _Link:
 
 def _at_largest(size: xr.DataArray, *others: xr.DataArray) -> tuple[xr.DataArray, ...]:
     """Return the largest over sections, fibres and ends, and the values of other arrays there."""
-    over = [dim for dim in (PLACE, "fibre", "end") if dim in size.dims]
+    over = [dim for dim in (PLACE, FIBRE, END) if dim in size.dims]
     arrays = (array.drop_vars(array.coords) for array in xr.broadcast(size, *others))
     rows = [array.stack(every=over, create_index=False) for array in arrays]
     first = rows[0].fillna(-np.inf).argmax("every")
