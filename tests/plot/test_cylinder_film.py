@@ -2,14 +2,17 @@
 
 import subprocess
 import sys
+from dataclasses import replace
 
 import matplotlib as mpl
 import numpy as np
 import pytest
+import xarray as xr
 from html_page import Page
 from refusals import refusal
 
 import linksweep as ls
+from linksweep.plot.kit.colors import FORCE_COLORS
 
 mpl.use("Agg")
 ENGINE = ls.example("engine")
@@ -48,6 +51,41 @@ def test_banks_share_one_crank():
     assert left == pytest.approx(-high, rel=1e-12)
     assert right == pytest.approx(low, rel=1e-12)
     assert left < 0.0 < right
+
+
+def arrows_of_guides(film, k):
+    """Return the arrow (x, y) of F43 of each cylinder in frame k."""
+    film.show(k)
+    shafts = [line for line in film.figure.axes[0].lines if line.get_color() == FORCE_COLORS["F43"]]
+    return [np.diff(shaft.get_xydata(), axis=0)[0] for shaft in shafts]
+
+
+PRESSURE = xr.DataArray([1e5, 40e5, 10e5, 1e5], {"theta2": [0.0, 90.0, 180.0, 270.0]}, "theta2")
+
+
+@pytest.mark.parametrize(
+    "load",
+    [
+        ls.Load("slider", force=(0.0, -2000.0)),
+        ls.GasPressure(bore=0.086, pressure=PRESSURE, interpolation="linear"),
+    ],
+    ids=["force in the ground's axes", "pressure over theta2"],
+)
+def test_forces_of_a_bank_are_those_of_its_own_cylinder_turned(load):
+    """Reference: one upright cylinder whose crank is at θ2 − β, under gravity turned by −β; its forces turned by β."""
+    engine = replace(ENGINE, loads=[load])
+    film = ls.plot.animate(ls.MultiCylinder(engine, [0, 0], bank_angles=[45.0, -45.0]), frames=6)
+    own = []
+    for bank in (45.0, -45.0):
+        cos, sin = np.cos(np.radians(bank)), np.sin(np.radians(bank))
+        turn = np.array([(cos, -sin), (sin, cos)])
+        cylinder = replace(engine, gravity=tuple(engine.gravity @ turn))
+        cycle = ls.sweep(cylinder, np.mod(60.0 * np.arange(6) - bank, 360.0), of=["F43x", "F43y"])
+        own.append(turn @ np.array([cycle.F43x, cycle.F43y]))
+    forces = np.transpose(own, (2, 0, 1))  # frame, cylinder, x and y
+    arrows = np.array([arrows_of_guides(film, k) for k in range(6)])
+    scale = np.hypot(*arrows.T).max() / np.hypot(*forces.T).max()
+    np.testing.assert_allclose(arrows, scale * forces, rtol=0.0, atol=1e-9 * scale * np.abs(forces).max())
 
 
 @pytest.mark.long

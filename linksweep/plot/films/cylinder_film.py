@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from linksweep.mechanisms.drawing import Drawing
     from linksweep.plot.kit.film import Film
 
 WIDTH = 2.0  # inches of a throw's panel
@@ -39,17 +40,13 @@ def film_of_cylinders(machine: MultiCylinder, frames: int, title: str) -> Film:
     cycle = in_shown_units(machine.sweep(film_frames.SAMPLES, of=["T12"]), system)
     signals.require_one_design([cycle["T12"]])
     angles = np.arange(frames) * (machine.period / frames)
-    cylinders = [_turned(machine, k) for k in range(len(machine.crank_angles))]
     drawing = drawing_of(machine.engine.mechanism)
-    shots = [
-        film_frames.frames_of(scene, drawing, np.mod(angles + ahead, machine.period), None)
-        for scene, ahead in zip(cylinders, machine.crank_angles, strict=True)
-    ]
+    shots = [_frames(machine, k, drawing, angles) for k in range(len(machine.throws))]
     refuse([] if all(len(own) == frames for own in shots) else [film_frames.NOTHING])
     figure, panels, curve = _panels(machine)
     top = max(float(np.hypot(*force)) for own in shots for shot in own for force in shot.forces.values())
-    for ax, scene, own in zip(panels, cylinders, shots, strict=True):
-        draw_ground(ax, scene, drawing, own[0].shape)
+    for k, ax in enumerate(panels):
+        draw_ground(ax, _turned(machine, k), drawing, shots[k][0].shape)
     scale = film_frames.Scale(top, ARROW * max(np.ptp(ax.dataLim.intervaly) for ax in panels))
     for ax in dict.fromkeys(panels):
         there = [k for k, other in enumerate(panels) if other is ax]
@@ -76,8 +73,16 @@ def film_of_cylinders(machine: MultiCylinder, frames: int, title: str) -> Film:
     return Film(figure, draw, frames, title)
 
 
+def _frames(machine: MultiCylinder, k: int, drawing: Drawing, angles: np.ndarray) -> list[film_frames.Frame]:
+    """Return the frames of a cylinder at those crank angles of the engine that have a result, in the ground's axes."""
+    throw = machine.throws[k]
+    own = film_frames.frames_of(machine.cylinders[k], drawing, np.mod(angles + throw.ahead, machine.period), None)
+    cos, sin = throw.bank
+    return [frame.turned(np.array([(cos, -sin), (sin, cos)])) for frame in own]
+
+
 def _turned(machine: MultiCylinder, k: int) -> Scene:
-    """Return the scene of a cylinder as it stands, in axes of the ground."""
+    """Return a scene whose guide is that of a cylinder, in axes of the ground; its loads are not."""
     mechanism: Any = machine.engine.mechanism
     turned = replace(mechanism, slide_angle=mechanism.slide_angle + machine.bank_angles[k])
     return replace(machine.engine, mechanism=turned)

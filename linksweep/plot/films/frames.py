@@ -52,6 +52,11 @@ class Frame(NamedTuple):
     forces: dict[str, np.ndarray]
     loads: list[LoadSymbol]
 
+    def turned(self, turn: np.ndarray) -> Frame:
+        """Return the frame turned about the origin by a rotation matrix."""
+        forces = {name: turn @ force for name, force in self.forces.items()}
+        return Frame(self.angle, self.shape.turned(turn), forces, [load.turned(turn) for load in self.loads])
+
 
 class Scale(NamedTuple):
     """Scale of arrows: the largest force on it [N], and the length of that force's arrow [m]."""

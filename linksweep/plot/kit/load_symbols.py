@@ -48,6 +48,11 @@ class LoadSymbol(NamedTuple):
         rows = (None if row is None else row[..., k % row.shape[-1]] for row in self[3:])
         return LoadSymbol(self.name, self.kind, self.links, *rows)  # type: ignore[arg-type]
 
+    def turned(self, turn: np.ndarray) -> LoadSymbol:
+        """Return the symbol turned about the origin by a rotation matrix."""
+        force, end = (None if vector is None else turn @ vector for vector in (self.force, self.end))
+        return self._replace(place=turn @ self.place, force=force, end=end)
+
 
 def load_symbols(
     scene: Scene, drawing: Drawing, motion: xr.Dataset, places: Mapping[str, np.ndarray], angles: Any

@@ -34,6 +34,10 @@ class Slide(NamedTuple):
         places = np.sum((self.places - origin[:, None]) * self.along, axis=0)
         return float(np.nanmin(places)), float(np.nanmax(places))
 
+    def turned(self, turn: np.ndarray) -> Slide:
+        """Return the slide turned about the origin by a rotation matrix."""
+        return Slide(turn @ self.places, turn @ self.along)
+
 
 class Shape(NamedTuple):
     """A machine in a position, lengths in [m]: pins, centres of gravity, the curve of a point, blocks, shortest lengths
@@ -50,6 +54,16 @@ class Shape(NamedTuple):
     def lettered(self) -> dict[str, np.ndarray]:
         """Places of pins alone, without the centres of yokes."""
         return {name: place for name, place in self.pins.items() if is_pin(name)}
+
+    def turned(self, turn: np.ndarray) -> Shape:
+        """Return the shape turned about the origin by a rotation matrix."""
+        return self._replace(
+            pins={name: turn @ place for name, place in self.pins.items()},
+            centres={number: turn @ place for number, place in self.centres.items()},
+            curve=turn @ self.curve,
+            point=turn @ self.point,
+            slides=tuple(slide.turned(turn) for slide in self.slides),
+        )
 
 
 def positions(scene: Scene, drawing: Drawing, angles: Sequence[float]) -> xr.Dataset:
