@@ -40,6 +40,7 @@ ROOM = 1.0 / 30.0  # of the angle axis: what an upright word takes
 ONE_LINE, COLUMNS = 4, 3  # curves whose legend stands in one line; columns of a longer one
 ROW = 0.1  # of the largest force: room for a further line of the legend
 LETTERS = 50  # of a legend in one line, at the usual spacing
+CONSTANT = "constant"  # name of a signal's only value, in place of "max" and "min"
 HEADROOM = 1.3  # of the largest value, for the legend and the labels of peaks
 
 
@@ -130,7 +131,7 @@ def torque(ds: xr.Dataset, *, ax: Axes | None = None) -> Axes:
     Returns
     -------
     matplotlib Axes
-        Axes with gaps as in `forces`.
+        Axes with gaps as in `forces`. A constant is marked once, with its value.
 
     Raises
     ------
@@ -228,9 +229,12 @@ def _span(ax: Axes, extremes: Sequence[signals.Peak], size: float) -> None:
 
 
 def _extremes(curve: Curve) -> dict[str, signals.Peak]:
+    """Return the largest and the smallest value by name; of a constant, or at one angle, the value."""
     high, low = (signals.peak(curve.angles, sign * curve.values) for sign in (1.0, -1.0))
-    if not high or not low or high.value == -low.value:  # a constant has no extremes
+    if not high or not low:
         return {}
+    if high.value == -low.value:
+        return {CONSTANT if np.isfinite(curve.values).sum() > 1 else "": high}
     return {"max": high, "min": low._replace(value=-low.value)}
 
 
@@ -308,5 +312,5 @@ def _mark(ax: Axes, marks: Sequence[Mark], units: str) -> None:
 
 
 def _label_text(mark: Mark, units: str) -> str:
-    text = f"{mark.name_at_peak} {signals.number(mark.peak.value)} {units} at {signals.angle_text(mark.peak.angle)}"
-    return text.strip()
+    place = "" if mark.name_at_peak == CONSTANT else f"at {signals.angle_text(mark.peak.angle)}"
+    return f"{mark.name_at_peak} {signals.number(mark.peak.value)} {units} {place}".strip()

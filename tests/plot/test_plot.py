@@ -79,6 +79,23 @@ def test_angles_in_any_order_are_drawn_in_order_and_a_part_of_a_turn_is_not_clos
     assert ax.get_xlim() == (10.0, 50.0)
 
 
+@pytest.mark.parametrize("angles", [90, [10.0, 30.0, 50.0]])
+def test_a_constant_torque_is_drawn_with_its_value(angles):
+    """A massless press whose crank is braked by 5 N m at all angles."""
+    links = [ls.Link(length, 0.0, 0.0) for length in (0.08, 0.22, 0.18)]
+    scene = ls.Scene(ls.FourBar(*links, ground=0.20), 30.0, loads=[ls.Load("crank", torque=-5.0)])
+    ax = plot.torque(ls.sweep(scene, angles))
+    assert ax.get_ylim()[0] < 0.0 and 5.0 < ax.get_ylim()[1] < 7.0
+    assert texts(ax) == ["constant 5.000 N m"]
+
+
+def test_the_torque_of_one_angle_is_drawn_with_its_value():
+    ds = ls.sweep(SCENES["press"], theta2=[30.0])
+    ax = plot.torque(ds)
+    assert ax.get_ylim()[0] < float(ds.T12[0]) < ax.get_ylim()[1]
+    assert texts(ax) == [f"{float(ds.T12[0]):.4g} N m at 30°"]
+
+
 def test_gaps_stay_gaps_with_their_reason(cycles):
     ds = cycles["triple rocker"]
     bad = ds.status.values != 0
