@@ -169,6 +169,17 @@ def test_changed_results_and_batches_are_drawn_without_exact_peaks():
     ls.plot.cycle(ls.sweep(jumps, 90))
 
 
+@pytest.mark.parametrize("from_sample", [1, 45, 89])
+def test_one_altered_sample_leaves_a_cycle_without_exact_peaks(from_sample):
+    cycle = ls.sweep(pump(), 90)
+    later = xr.DataArray(np.arange(90) >= from_sample, dims="theta2")
+    for altered in (
+        cycle.assign(T12=xr.where(later, 0.5 * cycle.T12, cycle.T12).assign_attrs(cycle.T12.attrs)),
+        cycle.assign(T12=cycle.T12.where(~later)),
+    ):
+        assert with_peaks(altered) is altered
+
+
 def test_one_of_several_designs_is_marked_exactly():
     scene = replace(pump(), omega2=xr.DataArray([20.0, 40.0], {"speed": [1, 2]}, "speed"))
     labels = labels_at_peaks(ls.plot.torque(ls.sweep(scene, 90).isel(speed=1)), "N m")

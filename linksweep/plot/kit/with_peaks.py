@@ -26,7 +26,8 @@ from linksweep.scene.scene import Scene
 ASIDE = 1e-7
 """Distance from a peak [degree] at which its one-sided limit agrees in all digits that a plot prints."""
 EQUAL = 1e-9
-"""Largest difference between a sample and its scene's value, relative to the largest; an altered sample has more."""
+"""Largest difference between a sample and its scene's value, relative to the signal's largest; an altered one has
+more."""
 
 
 def with_peaks(ds: xr.Dataset, *more: str) -> xr.Dataset:
@@ -75,13 +76,11 @@ def _with_samples(ds: xr.Dataset, more: tuple[str, ...]) -> xr.Dataset:
 
 
 def _samples(scene: Scene, own: xr.Dataset, angles: np.ndarray) -> xr.Dataset | None:
-    """Return a cycle's own variables at other angles; None where one of its samples was altered."""
-    k = int(np.argmax((own["status"] == 0).values)) if "status" in own else 0
-    names = [str(name) for name in own.data_vars]
-    more = sweep(scene, np.append(own[INDEX].values[k], angles), of=names)[names]
-    if not _equal(own.isel({INDEX: k}, missing_dims="ignore"), more.isel({INDEX: 0}, missing_dims="ignore")):
-        return None
-    return more.isel({INDEX: slice(1, None)}, missing_dims="ignore")
+    """Return a cycle's own variables at other angles; None where any of its samples was altered."""
+    names, count = [str(name) for name in own.data_vars], own.sizes[INDEX]
+    both = sweep(scene, np.append(own[INDEX].values, angles), of=names)[names]
+    unaltered, more = (both.isel({INDEX: part}, missing_dims="ignore") for part in (slice(count), slice(count, None)))
+    return more if _equal(own, unaltered) else None
 
 
 def _raise_to_infinity(ds: xr.Dataset, worst: xr.Dataset, period: float) -> None:
@@ -111,8 +110,11 @@ def _around(worst: xr.Dataset, ends: Part, period: float) -> np.ndarray:
 
 
 def _equal(one: xr.Dataset, other: xr.Dataset) -> bool:
-    size = max((float(abs(one[name]).max()) for name in one.data_vars), default=0.0)
-    return all(abs(float(one[name]) - float(other[name])) <= EQUAL * size for name in one.data_vars)
+    rows = [(one[name].values, other[name].values) for name in one.data_vars]
+    sizes = (float(np.max(np.abs(row), initial=0.0, where=np.isfinite(row))) for _, row in rows)
+    return all(
+        np.allclose(*pair, rtol=0.0, atol=EQUAL * size, equal_nan=True) for pair, size in zip(rows, sizes, strict=True)
+    )
 
 
 @lru_cache(maxsize=8)
