@@ -110,6 +110,15 @@ def test_gaps_stay_gaps_with_their_reason(cycles):
         assert [text.get_text() for text in ax.texts] == ["cannot assemble"]
 
 
+def test_masked_angles_are_a_gap_without_a_result(cycles):
+    """Masking a whole Dataset masks the status, too, whose reasons are lost."""
+    ds = cycles["press"].where(cycles["press"].theta2 < 180.0)
+    for ax in (plot.forces(ds), plot.torque(ds)):
+        ((start, stop),) = [(p.get_x(), p.get_x() + p.get_width()) for p in ax.patches]
+        assert (start, stop) == (179.5, 360.0)
+        assert [text.get_text() for text in ax.texts] == ["no result"]
+
+
 def test_unbounded_forces_are_marked_as_off_the_scale(cycles):
     ds = cycles["triple rocker"]
     ax = plot.forces(ds)

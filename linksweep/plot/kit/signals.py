@@ -154,10 +154,11 @@ def full_turn(angles: np.ndarray) -> float | None:
 
 
 def gaps(ds: xr.Dataset, signal: xr.DataArray) -> list[Gap]:
-    """Return the gaps of a cycle: by the status, or where the Dataset has none by the signal's NaN."""
+    """Return the gaps of a cycle: by the status, NaN where it is masked, or without one by the signal's NaN."""
     status = ds["status"] if "status" in ds else xr.where(np.isnan(signal), 1, 0)
     angles, bad = revolution(ds, status)
     reasons = ds["status"].attrs.get("flag_meanings", "").split() if "status" in ds else []
+    bad = np.nan_to_num(bad, nan=len(reasons) or 1)
     edges = np.flatnonzero(np.diff(bad, prepend=0.0, append=0.0) != 0.0)
     intervals = []
     for start, stop in pairwise(edges.tolist()):
