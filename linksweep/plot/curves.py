@@ -1,7 +1,7 @@
 """Curves of a cycle over the crank angle: forces in the joints and the torque of the drive, their peaks marked.
 
-Angles without a result are a gap in the lines, shaded, with the reason. Where forces grow without bound beside it, the
-axis ends at a usual size.
+Angles without a result are a gap in the lines, shaded, with the reason. Where forces grow without bound, beside a gap
+or at a dead centre, the axis ends at a usual size.
 """
 
 from __future__ import annotations
@@ -79,8 +79,9 @@ def forces(ds: xr.Dataset, of: Iterable[str] | None = None, *, ax: Axes | None =
     Returns
     -------
     matplotlib Axes
-        Axes with a legend. Angles without a result are a gap in the lines, shaded. Where forces grow without bound
-        beside a gap, the axis ends at a usual size, and peaks beyond it are marked at the upper edge as off the scale.
+        Axes with a legend. Angles without a result are a gap in the lines, shaded. Where forces grow without bound,
+        beside a gap or at a dead centre, the axis ends at a usual size, and peaks beyond it are marked at the upper
+        edge as off the scale.
 
     Raises
     ------
@@ -99,8 +100,8 @@ def forces(ds: xr.Dataset, of: Iterable[str] | None = None, *, ax: Axes | None =
     if len(names) > 1:
         signals.require_one_design(by_name.values())
     curves = _curves(samples, ds, by_name, signals.magnitude)
-    peaks = [signals.peak(curve.angles, curve.values) for curve in curves]
-    top = signals.scale([curve.values for curve in curves], peaks)
+    peaks = [(peak, curve) for curve in curves for peak in signals.peaks(curve.angles, curve.values)]
+    top = signals.scale([(curve.angles, curve.values) for curve in curves], [peak for peak, _ in peaks])
     ax = axes_or_new(ax)
     _draw(ax, curves)
     ax.set_ylim(0.0, headroom(len(curves)) * top or 1.0)
@@ -110,10 +111,9 @@ def forces(ds: xr.Dataset, of: Iterable[str] | None = None, *, ax: Axes | None =
     ax.set_ylabel(f"{title} [{units}]")
     widest = shade_gaps(ax, ds, by_name[names[0]])
     crank_angles(ax, curves[0].angles)
-    runaway = any(peak and peak.value > HEADROOM * top for peak in peaks)
+    runaway = any(peak.value > HEADROOM * top for peak, _ in peaks)
     _legend(ax, curves, widest, runaway)
-    pairs = zip(peaks, curves, strict=True)
-    _mark(ax, [Mark(peak, curve, curve.name_at_peak) for peak, curve in pairs if peak and peak.value > 0.0], units)
+    _mark(ax, [Mark(peak, curve, curve.name_at_peak) for peak, curve in peaks if peak.value > 0.0], units)
     return ax
 
 
@@ -148,9 +148,9 @@ def torque(ds: xr.Dataset, *, ax: Axes | None = None) -> Axes:
     name = signals.drive_name(ds)
     units = signals.unit(ds[name], "N m")
     curves = _curves(samples, ds, {name: ds[name]}, lambda one, name: one[name])
-    extremes = [(curve, _extremes(curve)) for curve in curves]
-    every = [peak for _, pair in extremes for peak in pair.values()]
-    size = signals.scale([curve.values for curve in curves], every)
+    marks = [Mark(peak, curve, end) for curve in curves for end, peak in _extremes(curve)]
+    every = [mark.peak for mark in marks]
+    size = signals.scale([(curve.angles, curve.values) for curve in curves], every)
     ax = axes_or_new(ax)
     ax.axhline(0.0, color=GREY, linewidth=0.8, zorder=2.0)
     _draw(ax, curves)
@@ -160,7 +160,7 @@ def torque(ds: xr.Dataset, *, ax: Axes | None = None) -> Axes:
     crank_angles(ax, curves[0].angles)
     if len(curves) > 1:
         _legend(ax, curves, widest, any(abs(peak.value) > size for peak in every))
-    _mark(ax, [Mark(peak, curve, end) for curve, pair in extremes for end, peak in pair.items()], units)
+    _mark(ax, marks, units)
     return ax
 
 
@@ -228,14 +228,12 @@ def _span(ax: Axes, extremes: Sequence[signals.Peak], size: float) -> None:
     ax.set_ylim(low - room, high + room)
 
 
-def _extremes(curve: Curve) -> dict[str, signals.Peak]:
-    """Return the largest and the smallest value by name; of a constant, or at one angle, the value."""
-    high, low = (signals.peak(curve.angles, sign * curve.values) for sign in (1.0, -1.0))
-    if not high or not low:
-        return {}
-    if high.value == -low.value:
-        return {CONSTANT if np.isfinite(curve.values).sum() > 1 else "": high}
-    return {"max": high, "min": low._replace(value=-low.value)}
+def _extremes(curve: Curve) -> list[tuple[str, signals.Peak]]:
+    """Return the largest and the smallest values, each with its name; of a constant, or at one angle, the value."""
+    high, low = (signals.peaks(curve.angles, sign * curve.values) for sign in (1.0, -1.0))
+    if high and high[0].value == -low[0].value:
+        return [(CONSTANT if np.isfinite(curve.values).sum() > 1 else "", high[0])]
+    return [*(("max", peak) for peak in high), *(("min", peak._replace(value=-peak.value)) for peak in low)]
 
 
 def shade_gaps(ax: Axes, ds: xr.Dataset, signal: xr.DataArray) -> signals.Gap | None:

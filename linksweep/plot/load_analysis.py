@@ -92,7 +92,7 @@ def _usual_size(ax: Axes, angles: np.ndarray, whole: np.ndarray, stacks: dict[fl
     """Limit the axis to usual sizes, where the sum grows without bound beside a gap."""
     size = np.abs(whole)
     largest = signals.peak(angles, size)
-    usual = signals.scale([size], [largest])
+    usual = signals.scale([(angles, size)], [largest])
     if largest is None or largest.value <= usual:
         return
     tops = [float(np.max(np.abs(stack[size <= usual]), initial=0.0)) for stack in stacks.values()]

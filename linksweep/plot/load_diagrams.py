@@ -115,7 +115,8 @@ def _to_one_scale(ax: Axes, ds: xr.Dataset, loci: dict[str, tuple[np.ndarray, ..
     """Draw the loci of all pins to one scale."""
     sizes = {force: np.hypot(x, y) for force, (_, x, y) in loci.items()}
     units = signals.unit(signals.components(ds, next(iter(loci)))[0], "N")
-    usual = signals.scale(list(sizes.values()), [signals.peak(loci[force][0], size) for force, size in sizes.items()])
+    rows = [(loci[force][0], size) for force, size in sizes.items()]
+    usual = signals.scale(rows, [signals.peak(*row) for row in rows])
     draw_cross(ax)
     for force, (_, x, y) in loci.items():
         text = f"{signals.symbol(force)} ({drawing_of_results(ds).joint_text(force)})"

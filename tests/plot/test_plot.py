@@ -150,12 +150,41 @@ def test_torque_marks_both_extremes(drive):
     marks = [mark for mark in ax.lines if mark.get_label() == f"_peak {name}"]
     worst = ls.peaks(scene)
     text = "\n".join(texts(ax)).replace("−", "-")
-    for mark, extreme in zip(marks, (np.nanargmax, np.nanargmin), strict=True):
-        word = extreme.__name__[6:]
+    for word, limit in zip(("min", "max"), ax.get_ylim(), strict=True):
         value, at = float(worst[f"{name}_{word}"]), float(worst[f"{name}_{word}_at"])
-        assert mark.get_xdata()[0] == pytest.approx(at, abs=2e-7)
+        places = [mark.get_xdata()[0] for mark in marks if np.sign(mark.get_ydata()[0]) == np.sign(limit)]
+        assert any(place == pytest.approx(at, abs=2e-7) for place in places)
         number = f"{value:#.4g}".rstrip(".").replace("inf", "∞")  # at the dead centres of this drive
         assert f"{word} {number}" in text
+
+
+@pytest.mark.parametrize("count", [360, 719, 1000])
+def test_all_dead_centres_are_marked_and_the_axis_does_not_follow_the_grid(count):
+    """Crank and coupler lie in one line there: cos θ2 = ±((b ± a)² + d² − c²)/(2·d·(b ± a)). The usual size is that of
+    the angles without the fifths of the arcs beside."""
+    scene = ls.Scene(four_bar(0.08, 0.22, 0.18, 0.20), 30.0, loads=[LOAD], drive="rocker")
+    long, short = (np.degrees(np.arccos((side**2 + 0.20**2 - 0.18**2) / (0.4 * side))) for side in (0.30, 0.14))
+    first, second = long, 180.0 + short
+    away = np.concatenate(
+        [
+            np.arange(0.0, 0.8 * first, 0.1),
+            np.arange(0.8 * first + 0.2 * second, 0.2 * first + 0.8 * second, 0.1),
+            np.arange(0.8 * second + 0.2 * 360.0, 360.0, 0.1),
+        ]
+    )
+    samples = ls.sweep(scene, away)
+    ds = ls.sweep(scene, count)
+    ax = plot.forces(ds)
+    assert ax.get_ylim()[1] == pytest.approx(1.3 * max(size_of(samples, pin).max() for pin in PINS), rel=0.05)
+    for pin in PINS:
+        marks = [mark.get_xdata()[0] for mark in ax.lines if mark.get_label() == f"_peak {pin}"]
+        np.testing.assert_allclose(marks, [first, second], rtol=0.0, atol=2e-7)
+    ax = plot.torque(ds)
+    assert ax.get_ylim()[1] == pytest.approx(1.36 * float(abs(samples.T14).max()), rel=0.05)  # 0.18 of the span beyond
+    marks = [mark.get_xydata()[0] for mark in ax.lines if mark.get_label() == "_peak T14"]
+    low, high = ax.get_ylim()
+    expected = [(first, high), (second, high), (first, low), (second, low)]
+    np.testing.assert_allclose(sorted(map(tuple, marks)), sorted(expected), rtol=0.0, atol=2e-7)
 
 
 def test_bearing_diagram_has_equal_scales_and_its_ticks_at_their_angles(cycles):

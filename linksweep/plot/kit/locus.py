@@ -35,7 +35,7 @@ def draw_locus(
     """
     size = np.hypot(x, y) if size is None else size
     largest = signals.peak(angles, size)
-    usual = signals.scale([size], [largest])
+    usual = signals.scale([(angles, size)], [largest])
     draw_cross(ax)
     ax.plot(x, y, color=BLUE, label=f"_locus {name}")
     tip = np.zeros(2)

@@ -177,6 +177,12 @@ def peak(angles: np.ndarray, values: np.ndarray) -> Peak | None:
     return Peak(float(angles[k]), float(values[k]), bool(np.isnan(beside).any() or np.isinf(values[k])))
 
 
+def peaks(angles: np.ndarray, values: np.ndarray) -> list[Peak]:
+    """Return the largest sample, or every infinite one; none where there is no result at all."""
+    poles = [Peak(float(angles[k]), np.inf, True) for k in np.flatnonzero(np.isposinf(values))]
+    return poles or [largest for largest in [peak(angles, values)] if largest]
+
+
 def tip(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     """Return the components (x, y) of the largest force; of an infinite one, those beside it, which have its
     direction."""
@@ -188,27 +194,29 @@ def tip(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     return np.array([x[k], y[k]])
 
 
-def scale(rows: Sequence[np.ndarray], peaks: Iterable[Peak | None]) -> float:
-    """Return the largest size that a plot of these rows should show.
+def scale(rows: Sequence[tuple[np.ndarray, np.ndarray]], peaks: Iterable[Peak | None]) -> float:
+    """Return the largest size that a plot of these rows, of angles and values, should show.
 
-    Beside a toggle forces grow without bound, and the largest sample only measures how near the grid came to it. Where
-    that sample would flatten all others, the scale is theirs, and larger values are marked as off the scale.
+    Beside a toggle or a dead centre forces grow without bound, and the largest sample only measures how near the grid
+    came to it. Where that sample would flatten all others, the scale is theirs, and larger values are marked as off the
+    scale.
     """
-    largest = max((float(np.max(np.abs(row), initial=0.0, where=np.isfinite(row))) for row in rows), default=0.0)
-    usual = max((_largest_away_from_gaps(np.abs(row)) for row in rows), default=0.0)
+    largest = max((float(np.max(np.abs(row), initial=0.0, where=np.isfinite(row))) for _, row in rows), default=0.0)
+    usual = max((_largest_away_from_gaps(angles, np.abs(row)) for angles, row in rows), default=0.0)
     runaway = any(peak and peak.beside_gap and abs(peak.value) > 3.0 * usual for peak in peaks)
     return usual if runaway and usual > 0.0 else largest
 
 
-def _largest_away_from_gaps(sizes: np.ndarray) -> float:
-    """Return the largest of a row without the last fifth of each arc before a gap, where a toggle is near."""
+def _largest_away_from_gaps(angles: np.ndarray, sizes: np.ndarray) -> float:
+    """Return the largest of a row without the fifths of each arc before gaps and poles, where forces grow."""
     there = np.isfinite(sizes)
     edges = np.flatnonzero(np.diff(there, prepend=False, append=False)).tolist()
     kept = [0.0]
     for start, stop in zip(edges[::2], edges[1::2], strict=True):
-        near = (stop - start + 4) // 5
-        arc = sizes[start + near * (start > 0) : stop - near * (stop < len(sizes))]
-        kept.append(float(arc.max(initial=0.0)))
+        arc, (first, last) = slice(start, stop), angles[[start, stop - 1]]
+        near = (last - first) / 5.0
+        low, high = first + near * (start > 0), last - near * (stop < len(sizes))
+        kept.append(float(np.max(sizes[arc], initial=0.0, where=(low <= angles[arc]) & (angles[arc] <= high))))
     return max(kept)
 
 

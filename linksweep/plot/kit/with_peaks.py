@@ -8,16 +8,19 @@ after each.
 from __future__ import annotations
 
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 
 from linksweep.base.degrees import signed_distance
+from linksweep.engine.quantity import opposite_of
 from linksweep.files.netcdf import scene_of
 from linksweep.plot.kit.signals import INDEX, WHOLE_TURN, full_turn, require_angles
 from linksweep.results.compute import angles_missing
 from linksweep.results.origin.in_shown_units import results_in_shown_units
 from linksweep.results.peak_search.paths import Part
+from linksweep.results.peak_search.singular.poles import poles_of_one_design
 from linksweep.results.peaks import peaks
 from linksweep.results.sweep import sweep
 from linksweep.scene.designs.choose import design_labels
@@ -28,6 +31,14 @@ ASIDE = 1e-7
 EQUAL = 1e-9
 """Largest difference between a sample and its scene's value, relative to the signal's largest; an altered one has
 more."""
+
+
+class Pole(NamedTuple):
+    """An angle [degree] beside which a quantity grows without bound, towards +inf or -inf by its sign."""
+
+    name: str
+    sign: float
+    angle: float
 
 
 def with_peaks(ds: xr.Dataset, *more: str) -> xr.Dataset:
@@ -57,8 +68,8 @@ def _with_samples(ds: xr.Dataset, more: tuple[str, ...]) -> xr.Dataset:
     ends = float(angles.min()), float(angles.min() + turn if turn else angles.max())
     part = None if ends[1] - ends[0] >= scene.period else ends
     known = tuple(name for name in more if name in scene.table.quantity)
-    worst = _peaks(scene, known, part)
-    new = np.setdiff1d(_around(worst, ends, scene.period), angles)
+    worst, poles = _peaks(scene, known, part), _poles(scene, known)
+    new = np.setdiff1d(_around(worst, poles, ends, scene.period), angles)
     names = [str(name) for name in ds.data_vars if name in scene.table.quantity]
     if not len(new) or not names:
         return ds
@@ -69,7 +80,7 @@ def _with_samples(ds: xr.Dataset, more: tuple[str, ...]) -> xr.Dataset:
     bare = [part.reset_coords(drop=True) for part in (own, added)]
     joined = xr.concat([part.broadcast_like(part[INDEX]) for part in bare], INDEX).sortby(INDEX)
     labels = {name: label for name, label in ds.coords.items() if not label.dims}
-    _raise_to_infinity(joined, worst, scene.period)
+    _raise_to_infinity(joined, [*_infinite(worst), *poles], scene.period)
     if "status" in joined:
         joined = joined.isel({INDEX: (joined["status"] == 0).values | np.isin(joined[INDEX], angles)})
     return joined.assign_coords(labels).assign_attrs({**ds.attrs, WHOLE_TURN: turn or 0.0})
@@ -83,27 +94,32 @@ def _samples(scene: Scene, own: xr.Dataset, angles: np.ndarray) -> xr.Dataset | 
     return more if _equal(own, unaltered) else None
 
 
-def _raise_to_infinity(ds: xr.Dataset, worst: xr.Dataset, period: float) -> None:
-    """Make the largest samples beside an infinite peak infinite: only their angle has a meaning."""
-    for name in (str(name) for name in worst.data_vars if f"{name}_at" in worst and np.isinf(worst[name])):
-        stem, sign = name.rpartition("_")[0], float(np.sign(worst[name]))
-        parts = [ds[part] for part in ([stem] if stem in ds else [f"{stem}x", f"{stem}y"]) if part in ds]
-        away = signed_distance(ds[INDEX].values, float(worst[f"{name}_at"]), period)
-        if not parts:
+def _infinite(worst: xr.Dataset) -> list[Pole]:
+    """Return the places of infinite peaks."""
+    names = [str(name) for name in worst.data_vars if f"{name}_at" in worst and np.isinf(worst[name])]
+    return [Pole(name.rpartition("_")[0], float(np.sign(worst[name])), float(worst[f"{name}_at"])) for name in names]
+
+
+def _raise_to_infinity(ds: xr.Dataset, poles: list[Pole], period: float) -> None:
+    """Make the largest samples beside poles infinite: only their angle has a meaning."""
+    for name, sign, angle in poles:
+        parts = [ds[part] for part in ([name] if name in ds else [f"{name}x", f"{name}y"]) if part in ds]
+        near = np.abs(signed_distance(ds[INDEX].values, angle, period)) < 2.0 * ASIDE
+        if not parts or not near.any():
             continue
         size = np.nan_to_num(np.hypot(*(part.values for part in parts)) if len(parts) == 2 else sign * parts[0].values)
-        k = int(np.argmax(np.where(np.abs(away) < 2.0 * ASIDE, size, -np.inf)))
+        k = int(np.argmax(np.where(near, size, -np.inf)))
         for part in parts:
             part.values[k] = np.copysign(np.inf, part.values[k])
         if "status" in ds:
             ds["status"].values[k] = 0
 
 
-def _around(worst: xr.Dataset, ends: Part, period: float) -> np.ndarray:
-    """Return the angles [degree] of peaks, and beside them, between two ends and in the period that begins with the
-    first."""
+def _around(worst: xr.Dataset, poles: list[Pole], ends: Part, period: float) -> np.ndarray:
+    """Return the angles [degree] of peaks and poles, and beside them, between two ends and in the period that begins
+    with the first."""
     names = [str(name) for name in worst.data_vars if str(name).endswith("_at")]
-    at = np.array([float(worst[name]) for name in names])
+    at = np.array([*(float(worst[name]) for name in names), *(pole.angle for pole in poles)])
     around = (at[np.isfinite(at), None] + np.array([-ASIDE, 0.0, ASIDE])).ravel()
     away = np.mod(around - ends[0], period)
     return ends[0] + away[away <= ends[1] - ends[0]]
@@ -120,3 +136,13 @@ def _equal(one: xr.Dataset, other: xr.Dataset) -> bool:
 @lru_cache(maxsize=8)
 def _peaks(scene: Scene, more: tuple[str, ...], part: Part | None) -> xr.Dataset:
     return peaks(scene, [*scene.mechanism.peak_quantities(scene.drive), *more], between=part)
+
+
+@lru_cache(maxsize=8)
+def _poles(scene: Scene, more: tuple[str, ...]) -> list[Pole]:
+    """Return all poles of a period: a peak that is infinite is at one of them."""
+    ends: dict[str, tuple[str, float]] = {}
+    for name in [*scene.mechanism.peak_quantities(scene.drive), *more]:
+        squared = scene.table.quantity[name].squared
+        ends |= {squared: (name, 1.0)} if squared else {name: (name, 1.0), opposite_of(name): (name, -1.0)}
+    return [Pole(*ends[signal], angle) for signal, angle in poles_of_one_design(scene, tuple(ends))]

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from linksweep.chains.finding import Finding
-from linksweep.engine.quantity import regardless_of_jams
+from linksweep.engine.quantity import regardless_of_jams, unless_jammed
 from linksweep.engine.run import Field
 from linksweep.results.compute import surely_ok
 from linksweep.results.peak_search.between import PARTLY
@@ -109,6 +109,15 @@ def poles(group: Group, signals: tuple[str, ...]) -> tuple[Array, Array, Array]:
         values = group.values(signals, rows, angles.ravel()).reshape(len(signals), *angles.shape)
         infinite = _grows_as_a_power(np.abs(values)) & (values[..., 0] > 0.0)
     return row, angle, np.any(infinite, axis=-1).T
+
+
+def poles_of_one_design(scene: Scene, signals: tuple[str, ...]) -> list[tuple[str, float]]:
+    """Return the signals of a scene of one design that are inf somewhere, each with the angle [degree], every time."""
+    if not may_have_poles(scene, signals):
+        return []
+    searched = tuple(map(unless_jammed, signals)) if may_jam(scene) else signals
+    _, angle, infinite = poles(all_at_once(scene, np.zeros(1, dtype=int)), searched)
+    return [(signals[k], float(angle[nth])) for nth, k in zip(*np.nonzero(infinite), strict=True)]
 
 
 def designs_with_candidates(scene: Scene, designs: Array, signals: tuple[str, ...]) -> Array:
