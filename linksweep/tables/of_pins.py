@@ -13,7 +13,7 @@ from linksweep.tables.cells import finite_or_inf, handy_unit, unit_of
 from linksweep.tables.table import Part, Row, Table
 
 BEARING = {  # column of a pin: variable, and the statistic over the cycle
-    "largest": ("F", "max"),
+    "largest": ("F_peak", ""),
     "mean": ("F", "mean"),
     "equivalent": ("equivalent_load", ""),
     "turns": ("rotation", ""),

@@ -239,7 +239,10 @@ def test_uneven_samples_are_weighted():
     ("call", "message"),
     [
         (lambda: ls.bearings(PRESS, theta2=[5.0]), "theta2 = 5 … 5 degrees: is one angle; give"),
-        (lambda: ls.bearings(PRESS, theta2=[0.0, 400.0]), "theta2 = 0 … 400 degrees: is more than a cycle of 360"),
+        (
+            lambda: ls.bearings(PRESS, theta2=[0.0, 90.0, 400.0]),
+            "theta2 = 0 … 400 degrees: is more than a cycle of 360",
+        ),
         (lambda: ls.bearings(PRESS, theta2=0), "theta2 = 0: a count of angles must be at least 1"),
         (
             lambda: ls.bearings(replace(PRESS, omega2=xr.DataArray(np.ones(36), dims="theta2")), theta2=36),

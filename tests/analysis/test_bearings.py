@@ -168,6 +168,20 @@ def test_pressure_and_friction():
     assert np.isnan(bearings.L10).all()
 
 
+def test_two_angles_are_the_ends_of_a_part_of_a_turn():
+    """Loads, pressure and the table are those of the way between the ends, not of the two positions there."""
+    bush = {"C": ls.Bearing(diameter=0.01, length=0.02)}
+    bearings, way = ls.bearings(PRESS, bush, theta2=(-60, 160)), np.linspace(-60.0, 160.0, 22_001)
+    force = ls.sweep(PRESS, way, of="F43").F43
+    at_c = bearings.sel(pin="C")
+    assert float(at_c.F_peak) == pytest.approx(float(force.max()), rel=1e-7)
+    assert float(at_c.F_peak_at) == pytest.approx(float(force.idxmax()), abs=0.01)
+    assert float(at_c.pressure.max()) == pytest.approx(float(force.max()) / 2e-4, rel=1e-4)
+    assert float(at_c.F.mean()) == pytest.approx(float(force.mean()), rel=1e-3)
+    (row,) = (line.split() for line in str(bearings.linksweep).splitlines() if line.startswith("C"))
+    assert float(row[1]) == pytest.approx(float(force.max()), rel=1e-3)
+
+
 def test_designs_are_batched():
     speeds = xr.DataArray([10.0, 20.0, 40.0], dims="speed")
     sizes = {"B": ls.Bearing(capacity=xr.DataArray([1e3, 2e3], dims="size"))}
@@ -209,6 +223,7 @@ def test_load_diagrams_show_the_forces_of_bearings(frame):
         (lambda: ls.bearings(PRESS, {"E": ls.Bearing()}), "pins: nothing is named 'E'"),
         (lambda: ls.bearings(PRESS, {"A": 3.0}), "pins.A = 3.0: must be a Bearing"),
         (lambda: ls.bearings(PRESS, 3.0), "pins = 3.0: must be as"),
+        (lambda: ls.bearings(PRESS, theta2=(340, 20)), "from 340 on to 20 is (340, 380)"),
         (lambda: ls.Bearing(diameter=-0.02), "diameter = -0.02 m: must be greater than 0"),
         (lambda: ls.Bearing(kind="needle"), "kind = 'needle': must be one of ball, roller"),
         (lambda: ls.load_spectrum(ls.sweep(PRESS, theta2=4)), "ds has no F, rotation_share, life_status: give what"),

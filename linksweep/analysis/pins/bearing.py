@@ -26,6 +26,8 @@ from linksweep.scene.scene import Scene
 EXPONENTS = {"ball": 3.0, "roller": 10.0 / 3.0}
 TEXTS = {
     "F": ("N", "magnitude of the pin force"),
+    "F_peak": ("N", "largest load over the continuous cycle or part of a turn"),
+    "F_peak_at": ("degree", "crank angle of the largest load"),
     "Fx": ("N", "pin force Fij of link i on link j, component along the x axis of the frame"),
     "Fy": ("N", "pin force Fij of link i on link j, component along the y axis of the frame"),
     "rotation_speed": ("rad/s", "angular velocity of link j relative to link i, of the pin force Fij"),

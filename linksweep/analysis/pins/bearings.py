@@ -15,16 +15,19 @@ from linksweep.base.memory import require_memory
 from linksweep.base.validate import count_problems, quote, refuse
 from linksweep.chains.between_links import force_name
 from linksweep.engine.threads import limits_threads
-from linksweep.results.compute import angles_missing, require_dataset
+from linksweep.results.compute import angles_missing, part_of, require_dataset
 from linksweep.results.cylinders.multi_cylinder import MultiCylinder
 from linksweep.results.dataset import by_command, joined, with_units
 from linksweep.results.peak_search.paths import Part
+from linksweep.results.peaks import peaks
 from linksweep.results.sweep import sweep
 from linksweep.scene.designs.lazy import in_memory
 from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene
 
 FRAMES = ("ground", "journal", "bearing")
+SAMPLES = 720
+"""Samples between the two ends of a part of a turn."""
 
 
 @limits_threads
@@ -46,8 +49,9 @@ def bearings(
         Bearing of each pin, {"B": ls.Bearing(...)}, or main bearing, {"main1": ls.Bearing(...)}; the others have one
         without sizes.
     theta2 : int or array_like, default 720
-        Count of crank angles over the cycle; or, of a machine that moves over part of a turn, angles [degree], of which
-        the least and the largest are the ends of its way.
+        Count of crank angles over the cycle; or, of a machine that moves over part of a turn, the first and the last
+        crank angle [degree] of its way, sampled between; or samples [degree], of which the least and the largest are
+        the ends of the way.
     threads : int, default None
         Largest number of threads; None for all cores.
 
@@ -68,7 +72,7 @@ def bearings(
         - `rotation` [degree] over the cycle, or once over the part of a turn; `equivalent_load` [N], `L10` [million
           revolutions] and `L10h` [hours]: integrals over the continuous angle, which do not depend on the count of
           samples
-        - of main bearings also `F_peak` [N] and `F_peak_at` [degree], exact as in `linksweep.peaks`
+        - `F_peak` [N] and `F_peak_at` [degree], exact as in `linksweep.peaks`, over the cycle or the part of a turn
         - `status` of each sample; integrals leave out angles that are not ok
         - `life_status` (…, pin): ok, partial_revolution (the life of the angles that are ok), nothing_solved (NaN),
           unbounded_load (equivalent load inf, life 0), no_rotation (NaN).
@@ -76,8 +80,8 @@ def bearings(
     Raises
     ------
     ValueError
-        If the machine lacks pins, or one of those named, a value is no Bearing, the angles span more than a cycle, or
-        an array over theta2 states no angles.
+        If the machine lacks pins, or one of those named, a value is no Bearing, the angles span no part of a cycle,
+        or an array over theta2 states no angles.
 
     Notes
     -----
@@ -99,19 +103,19 @@ def bearings(
         return main_bearings(scene.in_memory, pins, theta2)
     links = checked_pins(scene, pins)
     scene = in_memory(scene)
-    part = part_of_turn(theta2, scene)
+    part = _part_of_turn(theta2, scene)
     refuse(angles_missing(scene))
     names = [name for pin, pair in links.items() for name in _outputs(scene, pin, pair)]
-    cycle = sweep(scene, theta2, of=["omega2", *dict.fromkeys(names)])
+    cycle = sweep(scene, _samples(theta2, part), of=["omega2", *dict.fromkeys(names)])
     fitted = {pin: (pins or {}).get(pin, Bearing()) for pin in links}
-    forces, exponents = (
-        {pin: force_name(*pair) for pin, pair in links.items()},
-        {p: b.exponent for p, b in fitted.items()},
-    )
+    forces = {pin: force_name(*pair) for pin, pair in links.items()}
+    exponents = {pin: bearing.exponent for pin, bearing in fitted.items()}
     rotation = rotation_under_load(scene, forces, exponents, part)
+    highest = peaks(scene, of=dict.fromkeys(forces.values()), between=part)
     reach, speeds = _reach(cycle["theta2"], part), {pin: cycle[f"omega_{pin}"] for pin in links}
     parts = [
         {"F": cycle[forces[pin]]}
+        | {"F_peak": highest[f"{forces[pin]}_peak"], "F_peak_at": highest[f"{forces[pin]}_peak_at"]}
         | _in_frames(cycle, *links[pin], scene.mechanism.journals[pin])
         | journal_results(cycle, forces[pin], speeds[pin], abs(speeds[pin] / cycle["omega2"]) * reach, bearing)
         | rotation.life(pin, bearing.capacity, bearing.exponent)
@@ -123,17 +127,24 @@ def bearings(
     return xr.Dataset({**results, "status": cycle["status"]}, cycle.coords, attributes)
 
 
-def part_of_turn(theta2: Any, scene: Scene) -> Part | None:
+def _part_of_turn(theta2: Any, scene: Scene) -> Part | None:
     """Return the ends [degree] of the way that angles state; None of a count, which states the whole cycle."""
     grid = crank_grid(theta2, scene.period)
     if grid.period:
         return None
+    if len(grid.angles) == 2:
+        return part_of("theta2", tuple(grid.angles.tolist()), scene)
     first, last = float(grid.angles.min()), float(grid.angles.max())
     ends = f"theta2 = {first:g} … {last:g} degrees"
     refuse([f"{ends}: is one angle; give the ends of a part of a turn, or a count"] if first == last else [])
     too_long = f"{ends}: is more than a cycle of {scene.period:g} degrees; give a part of it, or a count"
     refuse([too_long] if last - first > scene.period else [])
     return first, last
+
+
+def _samples(theta2: Any, part: Part | None) -> Any:
+    """Return the crank angles to sample: between the ends of a part of a turn where those alone are stated."""
+    return np.linspace(*part, SAMPLES) if part and len(theta2) == 2 else theta2
 
 
 def _outputs(scene: Scene, pin: str, links: tuple[int, int]) -> list[str]:

@@ -16,16 +16,13 @@ import numpy as np
 import xarray as xr
 
 from linksweep.analysis.pins.bearing import EXPONENTS, Bearing, checked_pins
-from linksweep.analysis.pins.bearings import bearings, part_of_turn
+from linksweep.analysis.pins.bearings import bearings
 from linksweep.analysis.pins.catalogue import SIZES, DeepGroove, catalogue
 from linksweep.base.units import quantity
 from linksweep.base.validate import as_float, choice_problems, name_problems, quote, refuse
-from linksweep.chains.between_links import force_name
 from linksweep.engine.threads import limits_threads
 from linksweep.results.compute import requested
-from linksweep.results.dataset import by_command, flags, joined, with_units
-from linksweep.results.peak_search.paths import Part
-from linksweep.results.peaks import peaks
+from linksweep.results.dataset import by_command, flags, with_units
 from linksweep.scene.scene import Scene
 
 SAMPLES = 24
@@ -83,8 +80,8 @@ def choose_bearings(
     outside : float, str or mapping, default None
         Largest outside diameter, likewise [m]; None for any.
     theta2 : array_like, default None
-        Angles [degree] of a machine that moves over part of a turn, of which the least and the largest are the ends of
-        its way; None, or a count as in `linksweep.bearings`, for the whole cycle.
+        First and last crank angle [degree] of the way of a machine that moves over part of a turn, or angles as in
+        `linksweep.bearings`; None, or a count, for the whole cycle.
     threads : int, default None
         Largest number of threads; None for all cores.
 
@@ -125,9 +122,8 @@ def choose_bearings(
     refuse(choice_problems("kind", kind, EXPONENTS) + _problems(static_safety, series))
     bores, outsides = _limits("bore", bore, links, 0.0), _limits("outside", outside, links, np.inf)
     pins = {pin: Bearing(capacity=1.0, kind=kind) for pin in links}
-    part = None if theta2 is None else part_of_turn(theta2, scene)
-    loads = bearings(scene, pins, theta2=SAMPLES if part is None else part)
-    largest = _largest(scene, links, part)
+    loads = bearings(scene, pins, theta2=SAMPLES if theta2 is None else theta2)
+    largest = loads["F_peak"]
     turning = loads["L10h"].notnull() | (loads["rotation"] != 0.0)
     required = xr.where(turning, (hours / loads["L10h"]) ** (1.0 / EXPONENTS[kind]), 0.0)  # L10h ~ C^p, here of C = 1 N
     required_static = float(static_safety) * largest
@@ -149,13 +145,6 @@ def choose_bearings(
     described = with_units({name: (values.transpose(..., "pin"), *TEXTS[name]) for name, values in results.items()})
     designs = {name: values for name, values in loads.coords.items() if not {"theta2", "frame"} & {*values.dims}}
     return xr.Dataset({**choice, **described, "life_status": loads["life_status"]}, designs, attributes)
-
-
-def _largest(scene: Scene, links: Mapping[str, tuple[int, int]], part: Part | None) -> xr.DataArray:
-    """Return the exact largest load of each pin, over the cycle or a part of a turn."""
-    forces = [force_name(*pair) for pair in links.values()]
-    worst = peaks(scene, of=list(dict.fromkeys(forces)), between=part)
-    return joined([worst[f"{force}_peak"] for force in forces], "pin", links)
 
 
 def _first(

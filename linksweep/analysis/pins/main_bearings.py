@@ -25,8 +25,6 @@ MAIN_TEXTS = TEXTS | {
     "F": ("N", "magnitude of the force of the main bearing on the crankshaft"),
     "Fx": ("N", "force of the main bearing on the crankshaft, component along the x axis of the frame"),
     "Fy": ("N", "force of the main bearing on the crankshaft, component along the y axis of the frame"),
-    "F_peak": ("N", "largest load over the continuous cycle"),
-    "F_peak_at": ("degree", "crank angle of the largest load"),
     "rotation_speed": ("rad/s", "angular velocity of the crankshaft, positive counter-clockwise"),
 }
 NO_MAINS = "main_positions: places of the main bearings are unknown; give two places or more, main_positions=[...]"
