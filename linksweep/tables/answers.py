@@ -14,7 +14,7 @@ from linksweep.results.origin.machine_of_results import machine_of_results
 from linksweep.tables.of_any import parts_of_any, parts_to_compute
 from linksweep.tables.of_balance import balance_table, order_table
 from linksweep.tables.of_check import check_table
-from linksweep.tables.of_drive import STEADY, drive_table, steady_table, wheel_table
+from linksweep.tables.of_drive import STEADY, drive_parts, steady_table, wheel_parts
 from linksweep.tables.of_peaks import study_parts
 from linksweep.tables.of_pins import bearing_parts, choice_parts, share_parts
 from linksweep.tables.of_runs import run_parts
@@ -45,8 +45,8 @@ KINDS: Mapping[str, Kind] = {
     "breakdown": _kind(share_parts, "status", "source theta2"),
     "choose_bearings": _kind(choice_parts, "required_capacity required_static_capacity F_peak", "pin"),
     "compare": _kind(lambda ds: iter([balance_table(ds)]), "", "balance"),
-    "duty": _kind(lambda ds: iter([drive_table(ds)]), "effort_peak power_max work_fed", ""),
-    "flywheel": _kind(lambda ds: iter([wheel_table(ds)]), "speed flywheel_inertia fluctuation drive_torque", "theta2"),
+    "duty": _kind(drive_parts, "effort_peak power_max work_fed", ""),
+    "flywheel": _kind(wheel_parts, "speed flywheel_inertia fluctuation drive_torque", "theta2"),
     "run_up": _kind(run_parts, "duration time speed", "step"),
     "run_down": _kind(run_parts, "duration time speed", "step"),
     "sensitivities": _kind(sensitivity_parts, "parameter_unit", "parameter"),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+import numpy as np
 import xarray as xr
 
 from linksweep.analysis.balance.counterweights import Counterweight
@@ -16,8 +17,9 @@ ROUNDING = 1e-12
 
 
 def without_rounding(value: float, beside: float) -> str:
-    """Format a value with five digits, as 0 where it is only rounding beside another value."""
-    return f"{value if abs(value) > ROUNDING * beside else 0.0:.5g}"
+    """Format a value with five digits: 0 where it is only rounding beside another value, "none" for NaN."""
+    rounding = abs(value) <= ROUNDING * beside < np.inf
+    return "none" if np.isnan(value) else f"{0.0 if rounding else value:.5g}"
 
 
 def weight_table(weights: Iterable[Counterweight], system: UnitSystem) -> Table:

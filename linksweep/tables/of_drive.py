@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 import xarray as xr
 
 from linksweep.tables.cells import unit_of
 from linksweep.tables.of_balance import without_rounding
-from linksweep.tables.table import Row, Table
+from linksweep.tables.table import Part, Row, Table
 
 DRIVE = {  # title by variable, and the variable beside which less than 1e-12 is rounding
     "effort_mean": ("mean", "effort_peak"),
@@ -24,8 +26,12 @@ DRIVE = {  # title by variable, and the variable beside which less than 1e-12 is
 }
 
 
-def drive_table(work: xr.Dataset) -> Table:
-    """Return the table of the drive's torque, power and work in a cycle."""
+BROKEN = "It does not turn all the way round at that speed: linksweep.check tells where it ends."
+STALLS = "Its mean speed cannot be kept: the crank would stall on the way."
+
+
+def drive_parts(work: xr.Dataset) -> Iterator[Part]:
+    """Yield the table of the drive's torque, power and work in a cycle, and why there is no work of a cycle."""
     effort = " force" if len(unit_of(work["effort_peak"]).split()) == 1 else " torque"
     rows: list[Row] = []
     for name, (words, beside) in DRIVE.items():
@@ -33,7 +39,9 @@ def drive_table(work: xr.Dataset) -> Table:
             title = words + (effort if name.startswith("effort") else "")
             size = abs(float(work[beside]))
             rows.append((title, without_rounding(float(work[name]), size), unit_of(work[name])))
-    return Table(("the drive", "", ""), rows, right=(1,))
+    yield Table(("the drive", "", ""), rows, right=(1,))
+    if np.isnan(float(work["work_fed"])):
+        yield BROKEN
 
 
 STEADY = {  # title by variable, and the variable beside which less than 1e-12 is rounding
@@ -77,10 +85,12 @@ WHEEL = {  # title by variable, and the variable beside which less than 1e-12 is
 }
 
 
-def wheel_table(wheel: xr.Dataset) -> Table:
-    """Return the table of a flywheel for constant torque."""
+def wheel_parts(wheel: xr.Dataset) -> Iterator[Part]:
+    """Yield the table of a flywheel for constant torque, and why there is no speed."""
     rows: list[Row] = []
     for name, (title, beside) in WHEEL.items():
         number = without_rounding(float(wheel[name]), abs(float(wheel[beside])))
         rows.append((title, number, unit_of(wheel[name]).removesuffix("1")))
-    return Table(("with a flywheel", "", ""), rows, right=(1,))
+    yield Table(("with a flywheel", "", ""), rows, right=(1,))
+    if np.isnan(wheel["speed"].values).all():
+        yield BROKEN if wheel["status"].values.any() else STALLS

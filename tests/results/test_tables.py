@@ -177,3 +177,21 @@ def test_a_torque_that_is_only_rounding_prints_as_zero():
     """A press whose loads do no work needs no mean torque; a crank without flywheel and motor carries none."""
     assert ["constant torque", "0", "N m"] in cells(str(ls.flywheel(PRESS, fluctuation=0.05).linksweep))
     assert ["T12_peak", "0", "N m"] in cells(str(ls.run_down(PRESS, of=["T12"]).linksweep))
+
+
+def test_a_crank_that_does_not_come_round_has_no_work_and_no_flywheel():
+    """Pins that would be 0.28 m apart, of two links of 0.1 m each, part: forces are without bound there, not 0."""
+    short = ls.FourBar(*(ls.Bar(length, 0.02, 0.02, 7750.0) for length in (0.08, 0.1, 0.1)), ground=0.2)
+    scene, sentence = ls.Scene(short, omega2=30.0), "It does not turn all the way round at that speed"
+    duty, wheel = str(ls.duty(scene).linksweep), str(ls.flywheel(scene, fluctuation=0.02).linksweep)
+    assert ["largest torque", "inf", "N m"] in cells(duty) and ["work in a cycle", "none", "J"] in cells(duty)
+    assert ["its inertia", "none", "kg m^2"] in cells(wheel) and ["least speed", "none", "rad/s"] in cells(wheel)
+    assert duty.splitlines()[-1].startswith(sentence) and wheel.splitlines()[-1].startswith(sentence)
+
+
+def test_a_flywheel_too_small_to_pass_a_cycle_is_said_to_stall():
+    """A torque of 40 N m that takes and gives 80 J, on a crank whose whole kinetic energy is less than 1 J."""
+    pulsing = ls.Load("crank", torque=lambda theta2: 40.0 * np.sin(np.radians(theta2)))
+    table = str(ls.flywheel(ls.Scene(PRESS.mechanism, omega2=0.3, loads=[pulsing]), inertia=1e-9).linksweep)
+    assert ["fluctuation", "none"] in cells(table)
+    assert table.splitlines()[-1] == "Its mean speed cannot be kept: the crank would stall on the way."
