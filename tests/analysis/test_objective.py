@@ -334,6 +334,11 @@ def test_the_worst_of_load_cases_has_its_own_gradient():
     ("bounds", "words"),
     [
         ({"swign": (50, None)}, "did you mean"),
+        (
+            {"transmission_angle": (40, None)},
+            "transmission_angle is a quantity; name a result .* transmission_angle_min",
+        ),
+        ({"F32": (None, 900.0)}, "F32 is a quantity; name a result of it: F32_peak, F32_mean, F32_rms"),
         ({"swing": 50}, "must be"),
         ({"swing": (None, None)}, "must be"),
     ],

@@ -55,6 +55,8 @@ from linksweep.scene.parameters import free
 from linksweep.scene.scene import Scene
 
 ENDS = ("peak", "max", "min", "mean", "rms")
+POSITIONS = ("m", "degree")
+"""Units of quantities whose extremes are asked for by name: the peak, as of a transmission angle, is seldom meant."""
 OUTPUT = {"stroke": "x_slider", "swing": "theta4"}
 """The position of which a closed form gives the travel."""
 TRAVEL = "_travel"
@@ -121,7 +123,7 @@ def result_names(scene: Scene) -> list[str]:
     """Return the names of all results that have derivatives."""
     quantities = scene.table.quantity
     signed = [name for name, q in quantities.items() if not q.squared and name != "cond"]
-    positions = [n for n in signed if quantities[n].units in ("m", "degree") and rate_of(n) in scene.table.maker]
+    positions = [n for n in signed if quantities[n].units in POSITIONS and rate_of(n) in scene.table.maker]
     outputs = [name for name in (*OUTPUT, TIME_RATIO) if name in _findings(scene)]
     moving = [name for position in positions for name in (f"{position}{TRAVEL}", f"{position}_{TIME_RATIO}")]
     others = [*moving, *([FLYWHEEL] if "reduced_torque" in quantities else []), *life_names(scene)]
@@ -132,12 +134,19 @@ def result_problems(scene: Scene, path: str, name: str, conditions: Conditions =
     """Return the problem of a name that is no result with derivatives, or of a life without a bearing."""
     if name in life_names(scene):
         return conditions.life_problems(path, name)
-    known = result_names(scene)
-    if name in known or name in scene.table.quantity:
+    known, quantity = result_names(scene), scene.table.quantity.get(name)
+    if name in known or (quantity and quantity.units not in POSITIONS):
         return []
+    if quantity:
+        return [problem_of_quantity(scene, path, name)]
     stem = name.rpartition("_")[0]
     problems = quantity_problems(path, stem if stem and name.rpartition("_")[2] in ENDS else name, known, scene)
     return problems or name_problems(path, name, known)
+
+
+def problem_of_quantity(scene: Scene, path: str, name: str) -> str:
+    """Return the problem of a quantity alone where one of its results is to be named."""
+    return f"{path}: {name} is a quantity; name a result of it: {', '.join(f'{name}_{e}' for e in _ends(scene, name))}"
 
 
 def split(scene: Scene, name: str) -> tuple[str, str]:

@@ -48,7 +48,7 @@ def sensitivities(
     scene : Scene
         Scene of any number of designs.
     of : str or iterable of str, default None
-        Names of results: "F32_peak", "T12_max", "T12_min", "F14_mean", "T12_rms", of a quantity alone its peak;
+        Names of results: "F32_peak", "T12_max", "T12_min", "F14_mean", "T12_rms", of a force or a speed alone its peak;
         "stroke" or "swing", "x_ram_travel", "time_ratio", of a linkage "x_ram_time_ratio" or, of a rocker,
         "theta4_time_ratio", "transmission_angle_min", "flywheel_inertia"; of the bearing in a pin "equivalent_load_B",
         "L10_B", "L10h_B". With angles, names of quantities. None for the peaks of all pin forces and of the drive.

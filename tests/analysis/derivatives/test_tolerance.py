@@ -139,6 +139,11 @@ def test_refusals_name_the_parameter(made, words):
         ls.tolerance(PRESS, made, of="F32_peak")
 
 
+def test_an_angle_alone_does_not_say_which_of_its_extremes():
+    with pytest.raises(ValueError, match=r"of: transmission_angle is a quantity; .* transmission_angle_min"):
+        ls.tolerance(PRESS, {"ground": "js9"}, of="transmission_angle")
+
+
 def test_commands_print_the_tables(capsys):
     main(["sensitivities", "press", "--of", "F32_peak", "--to", "ground", "crank.length"])
     lines = capsys.readouterr().out.splitlines()
