@@ -98,9 +98,9 @@ def header_of(values: xr.DataArray) -> str:
 
 
 def _column(variable: xr.Variable, sizes: dict[Any, int]) -> Any:
-    """Return one value per row; flags in words."""
+    """Return one value per row; flags in words, nothing for NaN."""
     values = variable.set_dims(sizes).values.reshape(-1)
     if "flag_meanings" not in variable.attrs:
         return values
-    words = np.array(str(variable.attrs["flag_meanings"]).split())
+    words = np.array([*str(variable.attrs["flag_meanings"]).split(), ""])  # NaN stands behind all values
     return words[np.searchsorted(np.atleast_1d(variable.attrs["flag_values"]), values)]

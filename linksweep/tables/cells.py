@@ -13,6 +13,9 @@ PLAIN_UNITS = {"degree": "°", "1": ""}
 HANDY = {"Pa": ("MPa", 1e6), "Pa m/s": ("MPa m/s", 1e6), "degree": ("°", 1.0)}
 """Units of which the numbers are neither very large nor very small, and their number of SI units."""
 
+NO_VALUE = "no value"
+"""Word for a flag that is NaN."""
+
 
 def digits(value: float, significant: int = 6) -> str:
     """Return a number with so many significant digits."""
@@ -79,12 +82,18 @@ def words(flag: xr.DataArray) -> list[str]:
     return str(flag.attrs["flag_meanings"]).replace("_", "-").split()
 
 
-def in_words(flag: xr.DataArray) -> str:
-    """Return a flag in words: that of its value, or how often it has each."""
+def counts_of_words(flag: xr.DataArray) -> dict[str, int]:
+    """Return how often a flag has each of its values, by the word for it; NaN is no value, as of `Dataset.where`."""
     meaning = dict(zip(np.atleast_1d(flag.attrs["flag_values"]).tolist(), words(flag), strict=True))
     values, counts = np.unique(flag.values, return_counts=True)
-    counted = [(meaning.get(value, str(value)), n) for value, n in zip(values.tolist(), counts, strict=True)]
-    return counted[0][0] if len(counted) == 1 else ", ".join(f"{word} {n}" for word, n in counted)
+    names = [NO_VALUE if np.isnan(value) else meaning.get(value, str(value)) for value in values.tolist()]
+    return dict(zip(names, counts.tolist(), strict=True))
+
+
+def in_words(flag: xr.DataArray) -> str:
+    """Return a flag in words: that of its value, or how often it has each."""
+    counts = counts_of_words(flag)
+    return next(iter(counts)) if len(counts) == 1 else ", ".join(f"{word} {n}" for word, n in counts.items())
 
 
 def meanings(ds: xr.Dataset) -> dict[str, str]:

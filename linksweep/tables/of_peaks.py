@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.mechanisms import Mechanism
-from linksweep.tables.cells import at, digits, label, meanings, place_of_worst, unit_of, words
+from linksweep.tables.cells import at, counts_of_words, digits, label, meanings, place_of_worst, unit_of
 from linksweep.tables.table import Part, Row, Table
 
 
@@ -31,13 +31,15 @@ def study_parts(ds: xr.Dataset, machine: type[Mechanism] | Mechanism) -> Iterato
     yield Table(header, [*filter(None, rows)], meanings=meanings(ds))
     shape = ", ".join(f"{dim} {n}" for dim, n in ds.sizes.items())
     designs = prod(ds.sizes.values())
-    counts = np.bincount(ds.status.values.reshape(-1)) * (designs // ds.status.size)
-    counts_text = ", ".join(f"{word} {n}" for word, n in zip(words(ds.status), counts, strict=False) if n)
-    yield f"designs: {designs} ({shape}): {counts_text}"
+    shared = designs // (ds.status.size or 1)
+    counts_text = ", ".join(f"{word} {n * shared}" for word, n in counts_of_words(ds.status).items())
+    yield f"designs: {designs} ({shape}): {counts_text or 'none'}"
 
 
 def _row(ds: xr.Dataset, name: str) -> Row:
     values = ds[name]
+    if np.isnan(values.values).all():
+        return name, "none", "", "", *("" for _ in ds.sizes)
     place = place_of_worst(values)
     angle = f"{at(ds[f'{name}_at'], place):.2f}°" if f"{name}_at" in ds else ""
     labels = (label(ds, dim, place.get(dim)) for dim in ds.sizes)

@@ -20,6 +20,18 @@ def study(n=8) -> xr.Dataset:
     return ls.peaks(made, of=["F32", "T12"], theta2=36)
 
 
+def test_designs_left_out_by_a_condition_are_rows_of_empty_cells(tmp_path):
+    designs = study()
+    some = designs.where(designs.omega2 < 25.0)
+    left_out = ~(designs.omega2 < 25.0).values
+    words = some.linksweep.to_pandas()["status"].to_numpy()
+    assert 0 < left_out.sum() < 8 and (words[left_out] == "").all()
+    np.testing.assert_array_equal(words[~left_out], designs.linksweep.to_pandas()["status"].to_numpy()[~left_out])
+    ls.save(some, tmp_path / "some.csv")
+    table = pd.read_csv(tmp_path / "some.csv")
+    assert (table["status"].isna() == left_out).all() and (table["F32_peak [N]"].isna() >= left_out).all()
+
+
 def test_a_row_for_each_design():
     designs = study()
     table = designs.linksweep.to_pandas()

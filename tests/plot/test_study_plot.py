@@ -346,6 +346,10 @@ OVER_ANGLE = xr.Dataset({"F32": (("design", "theta2"), np.ones((2, 3)))})
             "no design is ok and has a finite F32_peak (status: 12 cannot_assemble); to plot all that is finite",
         ),
         (
+            lambda: ls.plot.heat_map(GRID.where(GRID.F32_peak < 0.0), "F32_peak"),
+            "no design is ok and has a finite F32_peak (status: 12 no value)",
+        ),
+        (
             lambda: ls.plot.heat_map(GRID.assign(word=GRID.F32_peak.astype(str)), "word"),
             "of: word holds <U32 values, which must be numbers",
         ),

@@ -77,6 +77,17 @@ def test_flags_that_differ_are_counted():
     assert f"status:  ok {360 - failed}, cannot-assemble {failed}" in repr(cycle.linksweep)
 
 
+def test_designs_left_out_by_a_condition_have_no_value():
+    """`Dataset.where` makes the status of what it leaves out NaN, and a number of the others."""
+    designs = ls.peaks(ls.grid(PRESS, {"coupler.length": [0.2, 0.22, 0.24]}), of=["F32"])
+    some = designs.where(designs["coupler.length"] < 0.23)
+    assert repr(some.linksweep).splitlines()[-1] == "designs: 3 (coupler.length 3): ok 2, no value 1"
+    none = ls.pareto(designs.where(designs.F32_peak < 0.0), minimize="F32_peak").linksweep
+    assert ["F32_peak", "none"] in cells(repr(none)) and "designs: 0 (coupler.length 0): none" in repr(none)
+    cycle = ls.sweep(PRESS, 12, of=["F32"])
+    assert "status:  ok 3, no value 9" in repr(cycle.where(cycle.theta2 < 90.0).linksweep)
+
+
 def test_a_part_of_a_result_has_the_table_of_any():
     assert cells(repr(ls.peaks(PRESS)[["F32_peak"]].linksweep))[0] == ["quantity", "value", "unit"]
     assert repr(ls.peaks(PRESS)[["status"]].linksweep) == "status:  ok"

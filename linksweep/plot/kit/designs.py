@@ -73,6 +73,7 @@ def none_ok(ds: xr.Dataset, names: Iterable[str]) -> str:
         return nothing
     meanings = str(ds["status"].attrs.get("flag_meanings", "")).split()
     counts = {word: int((ds["status"] == code).sum()) for code, word in enumerate(meanings)}
+    counts["no value"] = int(ds["status"].isnull().sum())  # as of `Dataset.where`
     statuses = ", ".join(f"{count} {word}" for word, count in counts.items() if count)
     return f'{nothing} (status: {statuses}); to plot all that is finite, pass ds.drop_vars("status")'
 
