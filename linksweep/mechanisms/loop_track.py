@@ -93,6 +93,7 @@ class LoopTrack(Mechanism):
     status_meanings: ClassVar[tuple[str, ...]] = ("ok", "left_track", "stalled")
     round_trip: ClassVar[str] = "whether the car stays on the track all the way round"
     round_meanings: ClassVar[tuple[str, ...]] = ("ok", "partial_lap", "never_on_track")
+    lap_ends: ClassVar[tuple[str, ...]] = ("leaves_at", "stalls_at")
     title: ClassVar[str] = "Car in a loop"
     runs: ClassVar[str] = "stay on the track"
     highlights: ClassVar[Mapping[str, str]] = {"speed": "speed", "a_total": "largest acceleration"}

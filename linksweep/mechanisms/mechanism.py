@@ -89,6 +89,8 @@ class Mechanism(ByContent, ABC):
     """Description of the status of peaks."""
     round_meanings: ClassVar[tuple[str, ...]] = ("ok", "partial_revolution", "cannot_assemble", "unbounded")
     """Meaning of each value of the status of peaks."""
+    lap_ends: ClassVar[tuple[str, ...]] = ()
+    """Names of those numbers of the motion that may end a lap early: positions [rad], infinite where they do not."""
     title: ClassVar[str] = ""
     """Kind of machine in words; where empty, the name of the class."""
     runs: ClassVar[str] = "run"

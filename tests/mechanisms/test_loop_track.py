@@ -196,6 +196,20 @@ def test_peaks_are_those_of_the_whole_lap():
     assert int(ls.peaks(energy(30.0)).status) == 1
 
 
+@pytest.mark.parametrize("speed", [0.05, 0.1067, 1.0])
+def test_a_lap_that_stalls_soon_has_its_extremes_at_its_end(speed):
+    """At the stall v is 0, so that a = |F/m − g sin θ| and F_N = m g cos θ: no sample of a turn lies on these laps."""
+    thrust, mass, g, R = 20.0, 200.0, mp.mpf(9.81), 30
+    squared = lambda a: mp.mpf(speed) ** 2 + 2 * R * (thrust / mass * a - g * (1 - mp.cos(a)))  # noqa: E731
+    stall = mp.findroot(squared, (mp.mpf("1e-3"), mp.mpf("0.14")), solver="anderson")
+    worst = ls.peaks(energy(speed, thrust, mechanism=ls.LoopTrack(R, mass)), of=ALL[:5])
+    assert float(worst.a_total_peak) == pytest.approx(float(abs(thrust / mass - g * mp.sin(stall))), rel=1e-12)
+    assert float(worst.a_total_peak_at) == pytest.approx(float(mp.degrees(stall)), rel=1e-12)
+    assert float(worst.normal_force_min) <= float(mass * g * mp.cos(stall)) * (1.0 + 1e-14)
+    assert float(worst.speed_min) == pytest.approx(0.0, abs=1e-6 * speed)
+    assert float(worst.a_radial_min) == pytest.approx(0.0, abs=1e-13)
+
+
 def study() -> ls.Scene:
     mass = xr.DataArray([600.0, 700.0], {"m": [600.0, 700.0]}, "m")
     return energy(xr.DataArray([20.0, 30.0, 45.0], dims="entry"), 200.0, mechanism=ls.LoopTrack(30.0, mass))

@@ -4,8 +4,8 @@ Where the crank turns fully, no load changes with the angle and near-toggles are
 inside the kernel finds them. Where friction alone makes forces jump, loads over the angle are tables, or near-toggles
 may be anywhere, it searches the pieces of the cycle between jumps and near-toggles, and between some of the tables'
 angles; of designs that move over part of a turn, the pieces of the arcs between toggles. Otherwise its samples ignore
-jumps and the closest approaches of springs: paths about these are searched too. Other designs and scenes are searched
-along paths alone.
+jumps, the closest approaches of springs and laps that end soon: paths about these are searched too. Other designs and
+scenes are searched along paths alone.
 
 A peak is a value of the signal at some angle, so that it exceeds the true one by no more than rounding; or the limit of
 such values at a toggle, or where rounding errors exceed them.
@@ -47,7 +47,7 @@ from linksweep.results.peak_search.between import EVERYWHERE, ONE, PARTLY, drive
 from linksweep.results.peak_search.friction.directions import divides, with_known_directions
 from linksweep.results.peak_search.groups import Group, all_at_once, assembled_groups, different, empty, groups
 from linksweep.results.peak_search.on_arcs import follow_arcs
-from linksweep.results.peak_search.paths import ASIDE, Part, about_approaches, about_breaks, turns
+from linksweep.results.peak_search.paths import ASIDE, Part, about_approaches, about_breaks, short_laps, turns
 from linksweep.results.peak_search.pieces import AT_ONCE, follow_pieces, known_on_pieces, rubbing_signals
 from linksweep.results.peak_search.singular.poles import (
     designs_with_candidates,
@@ -166,6 +166,8 @@ def _fused_first(scene: Scene, signals: tuple[str, ...], assembly: Field) -> dic
         left = follow_arcs(scene, on_arcs, {signal: peaks[signal] for signal in turning})
         for own, some in ((turning, left), (constant, on_arcs)):
             _follow_all(scene, {signal: peaks[signal] for signal in own}, (), some)
+    elif scene.mechanism.lap_ends:
+        _follow_windows(scene, {signal: peaks[signal] for signal in turning}, partly, short_laps)
     return {signal: peaks[signal] for signal in signals}
 
 

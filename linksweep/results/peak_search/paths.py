@@ -40,6 +40,8 @@ BESIDE = np.array([ASIDE, 1e-3, 0.01, 0.1, 0.3, 1.0, 2.0, 4.0, 7.0, 11.0, 16.0, 
 """Distances from a break of the samples on either side, far enough to reach those of the fused search [degree]."""
 AT_JUMP = 0.1 * ASIDE
 """Distance from a jump within which an angle is at it, or samples are one [degree]."""
+SHORT_LAP, PER_LAP = 30.0, 12
+"""Length of a lap that ends early [degree] below which samples of a turn may lie too far apart, and its own samples."""
 FARTHER_ASIDE = 1e-4, 0.01
 """Distances from a break of more samples, unless the crank drives at a steady speed [degree]: those closest by may
 consist of rounding errors, and the higher side of a jump hides a summit close to the lower one."""
@@ -112,6 +114,16 @@ def turns(group: Any) -> Paths:
     before, after = neighbours(x, period)
     cuts = np.concatenate([cuts, cuts[:, :1] + period], axis=1)
     return Paths(np.arange(len(x)), x, before, after, cuts)
+
+
+def short_laps(group: Group) -> Paths:
+    """Return a path along each lap that ends soon, to one sample beyond its end."""
+    fields = group.scene.inputs.fields
+    end = np.degrees(np.min([group.number(fields[name]) for name in group.scene.mechanism.lap_ends], axis=0))
+    (row,) = np.nonzero((end > 0.0) & (end < SHORT_LAP))
+    step = end[row, None] / PER_LAP
+    x = step * np.arange(PER_LAP + 2)
+    return Paths(row, x, x - step, x + step, x, ends="stop")
 
 
 def search_samples(group: Group) -> Array:
