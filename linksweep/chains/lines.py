@@ -76,10 +76,11 @@ def _line_of_pins(motion: Motion, step: RPR, line: Vector) -> None:
     if step.guide not in motion.shape.inclined:
         motion.row(planar.along, xy(f"r{k}"), f"{role}_length", *line)
         return
-    second = motion.topology.links[role][1]
-    motion.row(pins.quotient, full(f"quotient{k}_{second}"), *motion.own(role, second), *direction_of(step.guide))
-    motion.row(pins.turned, xy(f"r{k}"), *xy(f"quotient{k}_{second}"), *line)
-    motion.certain |= dict.fromkeys(xy(f"quotient{k}_{second}"), f"{role}_length")
+    first, second, *_ = motion.topology.links[role]
+    quotient = full(f"quotient{k}_{first}_{second}")
+    motion.row(pins.quotient, quotient, *motion.own(role, second), *direction_of(step.guide))
+    motion.row(pins.turned, xy(f"r{k}"), *quotient[:2], *line)
+    motion.certain |= dict.fromkeys(quotient[:2], f"{role}_length")
 
 
 def _offset(motion: Motion, step: RPR) -> dict[str, Source]:

@@ -16,6 +16,7 @@ ORDERS = list(itertools.permutations(("coupler", "rocker", "rod", "output")))
 PINS = ["coupler C-B", "rod F-E", "output F-G", *(f"rocker {'-'.join(pins)}" for pins in itertools.permutations("DCE"))]
 THETA2 = np.array([10.0, 77.0, 160.0, 233.0, 310.0])
 OTHER = {"open": "crossed", "crossed": "open"}
+ARMS = ["-".join(pins) for pins in itertools.permutations("JKL")]
 LOADED = ls.Load("output", torque=-12.0)
 
 
@@ -32,6 +33,18 @@ def watt() -> ls.Scene:
 def knuckle() -> ls.Scene:
     scene = ls.example("knuckle-press")
     return replace(scene, loads=[ls.Load("ram", force=(0.0, 3e5))])
+
+
+def arm_past_a_pin() -> ls.Scene:
+    """Return an arm on a ground pin, its guide at an angle to all its lines of pins, that pushes two rams."""
+    lengths = {"crank": 0.2, "arm": 0.8, "rod": 1.8, "link": 1.9}
+    parts = {role: ls.Link(x, 2.0 * x, x**3, 0.4 * x, 300.0 * x) for role, x in lengths.items()}
+    text = "crank A-B, arm J-K-L past B, rod L-M, ram M on slide, link K-N, weight N on slide"
+    guides = {"arm": ls.Guide((0.1, 0.3), 50.0, of="arm"), "slide": ls.Guide((0.0, 0.4), 10.0)}
+    ground, points = {"A": (0.0, 0.0), "J": (-0.5, -0.6)}, {"L": (0.6, 75.0)}
+    rams = {"ram": ls.Slider(3.0), "weight": ls.Slider(2.0)}
+    machine = ls.Linkage(text, ground=ground, points=points, guides=guides, **parts, **rams)
+    return ls.Scene(machine, 5.0, 2.0, (0.3, -9.81), [ls.Load("ram", force=(-100.0, 0.0))])
 
 
 def reordered(scene: ls.Scene, order: tuple[str, ...]) -> ls.Scene:
@@ -65,7 +78,16 @@ def turned(scene: ls.Scene, role: str, pins: str) -> ls.Scene:
     points = {pin: place for pin, place in machine.points.items() if pin not in old[2:]}
     points |= {pin: own(places[pin]) for pin in others}
     links = machine.links.replace(f"{role} {'-'.join(old)}", f"{role} {pins}")
-    return replace(scene, mechanism=replace(machine, links=links, points=points, **{role: link}))
+    guides = {
+        name: turned_guide(guide, start, line) if guide.of == role else guide for name, guide in machine.guides.items()
+    }
+    return replace(scene, mechanism=replace(machine, links=links, points=points, guides=guides, **{role: link}))
+
+
+def turned_guide(guide: ls.Guide, start: complex, line: complex) -> ls.Guide:
+    """Return a link's guide in the link's axes from another start along another line."""
+    through = (complex(*guide.through) - start) / line * abs(line)
+    return replace(guide, through=(through.real, through.imag), angle=guide.angle - float(np.degrees(np.angle(line))))
 
 
 def polar(distance: float, angle: float) -> complex:
@@ -109,3 +131,9 @@ def test_order_of_links_that_share_a_pin(seed):
 @pytest.mark.parametrize("link", long_but(PINS, "rocker E-C-D", "rod F-E"))
 def test_order_of_the_pins_of_a_link(link):
     assert_equal_forces(turned(watt(), *link.split()), watt())
+
+
+@pytest.mark.parametrize("pins", long_but(ARMS, "L-K-J", "K-L-J"))
+def test_order_of_the_pins_of_an_arm_past_a_pin(pins):
+    """Whether its known pin J is named first or third, both pins that push a ram keep their places."""
+    assert_equal_forces(turned(arm_past_a_pin(), "arm", pins), arm_past_a_pin())
