@@ -112,5 +112,5 @@ def _transmission_angles(scene: Scene, pins: Iterable[str]) -> dict[str, xr.Vari
 
 def _by_pin(scene: Scene, fields: list[Field]) -> Field:
     """Return the fields of all pins, which may lack dims of each other, as one over the dim `pin` as well."""
-    dims = tuple(dim for dim in scene.inputs.sizes if any(dim in field.dims for field in fields))
+    dims = tuple(dim for dim in scene.at_one_angle.inputs.sizes if any(dim in field.dims for field in fields))
     return Field((*dims, "pin"), np.stack(np.broadcast_arrays(*(aligned(field, dims) for field in fields)), axis=-1))

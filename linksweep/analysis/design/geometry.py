@@ -154,7 +154,7 @@ def _travelled(scene: Scene, name: str, dwell: float) -> dict[str, xr.Variable]:
         "dwell_max": (ends.dwell_max, "degree", f"crank angle for which it rests within {dwell:g} of its largest"),
         "dwell_min": (ends.dwell_min, "degree", f"crank angle for which it rests within {dwell:g} of its least"),
     }
-    order = (*scene.inputs.sizes,)
+    order = (*scene.at_one_angle.inputs.sizes,)
     return {f"{name}_{word}": variable(*part[:2], f"{part[2]}: {of}", order) for word, part in parts.items()}
 
 
