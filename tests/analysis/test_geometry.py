@@ -101,6 +101,21 @@ def test_a_small_travel_is_none_of_rounding():
     assert float(motion.x_slider_max_at) == pytest.approx(0.0, abs=1e-6)
 
 
+@pytest.mark.parametrize("name", ["x_fixed", "x_turning", "Dx"])
+def test_a_position_that_grows_without_bound_has_infinite_travel(name):
+    """A guide of the crank turns with it, and becomes parallel to one on the ground twice: pin D runs to infinity."""
+    angles = xr.DataArray([30.0, 47.0, 61.3], dims="angle")
+    guides = {"rail": ls.Guide((0.0, 0.3), 10.0), "slot": ls.Guide((0.05, 0.02), angles, of="crank")}
+    parts = {"crank": ls.Link(0.1, **LIGHT), "fixed": ls.Slider(1.0), "turning": ls.Slider(1.0)}
+    text = "crank A-B, fixed D on rail, turning D on slot"
+    motion = ls.geometry(ls.Scene(ls.Linkage(text, ground={"A": (0.0, 0.0)}, guides=guides, **parts), 1.0), name)
+    for end, value in (("travel", np.inf), ("max", np.inf), ("min", -np.inf)):
+        np.testing.assert_array_equal(motion[f"{name}_{end}"], value)
+    for end in ("max_at", "min_at"):
+        np.testing.assert_allclose(motion[f"{name}_{end}"] % 180.0, (10.0 - angles) % 180.0, atol=1e-9)
+    assert all(np.isnan(motion[f"{name}_{word}"]).all() for word in ("time_ratio", "dwell_max", "dwell_min"))
+
+
 def test_a_link_that_turns_fully_has_nothing_of_its_travel():
     motion = ls.geometry(ls.example("drag-link-press"), "theta4")
     assert all(np.isnan(float(motion[name])) for name in motion if str(name).startswith("theta4"))

@@ -83,7 +83,8 @@ def geometry(
         - of each position of `of`, such as x_ram: `x_ram_travel`, its ends `x_ram_max`, `x_ram_min` and where they are,
           `x_ram_max_at`, `x_ram_min_at` [degree], `x_ram_time_ratio` [1], and `x_ram_dwell_max`, `x_ram_dwell_min`
           [degree], the crank angles for which it rests about its ends; NaN where it turns fully. Where it stands
-          still, its travel is 0, and ratio, dwells and angles of the ends are NaN.
+          still, its travel is 0, and ratio, dwells and angles of the ends are NaN; where it grows without bound, its
+          travel is inf, and ratio and dwells are NaN.
         - `transmission_angle_max`, `_min` and where they are, `_max_at`, `_min_at` [degree], as from `linksweep.peaks`;
           of a linkage one for each dyad. One that does not change has no angles of its ends, NaN.
 
