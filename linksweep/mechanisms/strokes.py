@@ -65,6 +65,11 @@ class Stroke:
             return self.crank_angles((position - self.start) / self.sense)
 
 
+def kind_of_position(name: str) -> str:
+    """Return the kind of a position by its name, before its machine is known: "angle" for "rocker.angle"."""
+    return "angle" if name.endswith(".angle") else "length"
+
+
 def slider_strokes(a: Number, b: Number, e: Number, guide: Number, sign: float, turning: Angles) -> dict[str, Stroke]:
     """Return the strokes of a slider: its position, and its distance from the outer dead centre."""
 

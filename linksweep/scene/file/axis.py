@@ -17,11 +17,11 @@ from linksweep.scene.storable import name_problem
 MOST = 1_000_000
 """Largest count of numbers of an axis that is stated by its ends."""
 KEYS = ("dim", "dims", "values", "unit", "start", "stop", "num", "coords", "theta2", "position", "interpolation")
-PLACES = {"theta2": "angle", "position": "length"}
-"""Dims along which a load may change, each short for its own `coords`, and the kinds of these."""
+PLACES = ("theta2", "position")
+"""Dims along which a load may change, each short for its own `coords`."""
 
 
-def design_axis(table: dict[str, Any], kind: str, alone: bool = True) -> xr.DataArray:
+def design_axis(table: dict[str, Any], kind: str, alone: bool = True, position_kind: str = "length") -> xr.DataArray:
     """Read the inline table that stands in place of a number: ``{dim = "length", values = ["8 cm", 0.09]}``.
 
     Parameters
@@ -29,11 +29,13 @@ def design_axis(table: dict[str, Any], kind: str, alone: bool = True) -> xr.Data
     table : dict
         `dim` or `dims`; `values`, nested as deep as the dims, or `start`, `stop`, `num`; the `unit` of plain
         numbers; `coords`, a list for each dim with labels; `theta2` and `position`, short for angles [degree] and
-        positions [m] in `coords`; `interpolation` over them.
+        positions [m] or [degree] in `coords`; `interpolation` over them.
     kind : str
         Kind of the quantity: a key of `KINDS`.
     alone : bool
         True where no other number has this one dim: without `coords` the values are then its labels.
+    position_kind : str
+        Kind of the positions: "length", or "angle" in a load over the angle of a link.
 
     Returns
     -------
@@ -57,7 +59,7 @@ def design_axis(table: dict[str, Any], kind: str, alone: bool = True) -> xr.Data
     values = _values(table, kind, problems)
     if not problems and values.ndim != len(dims):
         problems.append(f"values: lists nested {values.ndim} deep for {len(dims)} dims, {', '.join(dims)}")
-    coords = {} if problems else _coords(table, dims, values, alone, problems)
+    coords = {} if problems else _coords(table, dims, values, alone, position_kind, problems)
     if unknown:  # one of them may be what is missing
         problems = [problem for problem in problems if ": missing" not in problem]
     if problems:
@@ -128,7 +130,9 @@ def _array(values: Any, problems: list[str]) -> Any:
     return array
 
 
-def _coords(table: dict[str, Any], dims: list[str], values: Any, alone: bool, problems: list[str]) -> dict[str, Any]:
+def _coords(
+    table: dict[str, Any], dims: list[str], values: Any, alone: bool, position_kind: str, problems: list[str]
+) -> dict[str, Any]:
     """Read the labels of the dims; those of theta2 and of position are quantities."""
     sizes = dict(zip(dims, values.shape, strict=True))
     if not table.keys() & {"coords", *PLACES}:
@@ -137,7 +141,7 @@ def _coords(table: dict[str, Any], dims: list[str], values: Any, alone: bool, pr
         problems.append(f"coords = {as_toml(coords)}: must be a table, {{{dims[0]} = [...]}}")
         return {}
     coords = coords | {dim: table[dim] for dim in PLACES if dim in table}
-    for dim, kind in PLACES.items():
+    for dim, kind in zip(PLACES, ("angle", position_kind), strict=True):
         if isinstance(places := coords.get(dim), list) and any(isinstance(place, str) for place in places):
             coords[dim] = _read_nested(places, dim, kind, None, problems)
     for dim, labels in coords.items():

@@ -33,8 +33,8 @@ from linksweep.scene.curves.interpolation import interpolation_attribute
 from linksweep.scene.file.text_file import text_of
 
 KEYS = ("csv", "column", "unit", "interpolation")
-OVER = {"theta2": ("angle",), "position": ("length", "angle")}
-"""Names of the first column, with the kinds of quantity that it may be."""
+OVER = ("theta2", "position")
+"""Names of the first column."""
 HEADING = re.compile(r"(.*?)\s*\[([^\[\]]+)\]")
 LONGEST_CELL = 1000
 """Characters that a cell may have."""
@@ -58,7 +58,7 @@ class Sample(NamedTuple):
     value: float
 
 
-def csv_column(table: dict[str, Any], kind: str, folder: Path) -> xr.DataArray:
+def csv_column(table: dict[str, Any], kind: str, folder: Path, position_kind: str | None) -> xr.DataArray:
     """Read the inline table that stands in place of a number: ``{csv = "indicator.csv", column = "P", unit = "kN"}``.
 
     Parameters
@@ -69,6 +69,8 @@ def csv_column(table: dict[str, Any], kind: str, folder: Path) -> xr.DataArray:
         Kind of the quantity: a key of `KINDS`.
     folder : Path
         Folder to which the file's place is relative.
+    position_kind : str or None
+        Kind of the position that the column's load follows, "length" or "angle"; None where it follows none.
 
     Returns
     -------
@@ -87,9 +89,13 @@ def csv_column(table: dict[str, Any], kind: str, folder: Path) -> xr.DataArray:
         raise ValueError(f'csv = {as_toml(table["csv"])}: must be the name of a file, as in csv = "indicator.csv"')
     name, rows = table["csv"], _rows(table["csv"], folder)
     headings = [_heading(cell) for cell in rows[0].cells]
-    column, (over, unit_over) = _column(table, headings), headings[0]
-    unit = _unit_of_column(f"csv: {name}:{rows[0].line}", headings[column], kind, unit)
-    samples = _at_si_places(f"csv: {name}:{rows[0].line}", _samples(name, rows, column), over, unit_over)
+    column, over, first_line = _column(table, headings), headings[0].name, f"csv: {name}:{rows[0].line}"
+    unit = _unit_of_column(first_line, headings[column], kind, unit)
+    over_kind = "angle" if over == "theta2" else position_kind
+    if over_kind is None:
+        must = 'give the load the position that it follows, as in over = "slider.position", or a first column theta2'
+        raise ValueError(f"{first_line}: the first column is position, but over is missing; {must}")
+    samples = _at_si_places(first_line, _samples(name, rows, column), headings[0], over_kind)
     refuse(_order_problems(name, samples, over))
     if over == "theta2":
         refuse(_angle_problems(name, samples, steps=table.get("interpolation") == "step"))
@@ -159,28 +165,25 @@ def _unit_of_column(place: str, heading: Heading, kind: str, unit: str | None) -
     """Return the unit of a column's values: that of the table or that of its heading, which must not contradict."""
     if heading.unit is None:
         return unit
-    stated = _accepted(place, heading, (kind,))[1]
+    stated = _accepted(place, heading, kind)
     refuse([] if unit in (None, stated) else [f'{place}: {heading.name} is in {stated}; leave unit = "{unit}" out'])
     return stated
 
 
-def _at_si_places(place: str, samples: list[Sample], over: str, unit: str | None) -> list[Sample]:
+def _at_si_places(place: str, samples: list[Sample], over: Heading, kind: str) -> list[Sample]:
     """Return samples with their angles in degrees, or positions in SI units."""
-    if unit is None:
+    if over.unit is None:
         return samples
-    kind, spelling = _accepted(place, Heading(over, unit.replace("degree", "deg")), OVER[over])
+    spelling = _accepted(place, over, kind)
     return [sample._replace(angle=quantity(sample.angle, kind, spelling)) for sample in samples]
 
 
-def _accepted(place: str, heading: Heading, kinds: tuple[str, ...]) -> tuple[str, str]:
-    """Return the first of these kinds that has the unit of a heading, and the unit's listed spelling."""
-    problems = []
-    for kind in kinds:
-        try:
-            return kind, accepted_unit(str(heading.unit), kind)
-        except ValueError as error:
-            problems.append(f"{place}: {heading.name} [{heading.unit}]: {error}")
-    raise ValueError(problems[0])
+def _accepted(place: str, heading: Heading, kind: str) -> str:
+    """Return the listed spelling of the unit of a heading, which must be of this kind."""
+    try:
+        return accepted_unit(str(heading.unit), kind)
+    except ValueError as error:
+        raise ValueError(f"{place}: {heading.name} [{heading.unit}]: {error}") from None
 
 
 def _samples(name: str, rows: list[Row], column: int) -> list[Sample]:

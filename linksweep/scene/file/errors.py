@@ -15,6 +15,7 @@ import xarray as xr
 
 from linksweep.base.units import as_toml, key_as_toml
 from linksweep.base.validate import did_you_mean
+from linksweep.mechanisms.strokes import kind_of_position
 
 Where = tuple[str | int, ...]  # keys and list positions down to a value, as TOML nests them
 
@@ -53,7 +54,7 @@ class Log:
         whole: bool = True,
     ) -> None:
         named = [str(item) for at, item in _places(raw) if "dim" in at[-1:] or "dims" in at[-2:-1]]
-        self.arrays, self.dims = arrays, Counter(named)
+        self.raw, self.arrays, self.dims = raw, arrays, Counter(named)
         self.top, self.machine, self.folder, self.whole = top, machine, folder, whole
         self.problems: list[tuple[Where, str]] = []
         self.misplaced: set[Where] = set()  # where keys that are not understood were meant to be
@@ -77,6 +78,13 @@ class Log:
             self.misplaced |= {(*where, meant) for meant in difflib.get_close_matches(key, known, n=1)}
             listed = f"; a {owner} has {', '.join(known)}"
             self.problem((*where, key), f": unknown key{did_you_mean(key, known) or listed}")
+
+    def position_kind(self, where: Where) -> str | None:
+        """Return the kind of the position that the load of a number follows; None where it follows none."""
+        part: Any = self.raw
+        for key in where[:2]:  # as in ("loads", 0)
+            part = part[key]
+        return kind_of_position(str(part["over"])) if isinstance(part, dict) and "over" in part else None
 
     def variable(self, name: Any, where: Where) -> Any:
         if str(name) in self.arrays:

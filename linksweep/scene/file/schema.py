@@ -47,8 +47,9 @@ def _number_table(kind: NumberField, raw: dict[str, Any], where: Where, log: Log
     if "function" in raw:
         return log.function(f": was a function {raw['function']}; {INSTEAD}", where)
     if "csv" in raw:
-        return csv_column(raw, kind.rule.kind, log.folder)
-    return log.chosen(design_axis(raw, kind.rule.kind, alone=log.dims[str(raw.get("dim"))] == 1))
+        return csv_column(raw, kind.rule.kind, log.folder, log.position_kind(where))
+    alone, position_kind = log.dims[str(raw.get("dim"))] == 1, log.position_kind(where) or "length"
+    return log.chosen(design_axis(raw, kind.rule.kind, alone, position_kind))
 
 
 @read.register

@@ -23,6 +23,7 @@ inertia = 1e-3
 [[loads]]
 link = "slider"
 """
+PRESS = ls.example("press").to_toml() + '[[loads]]\nlink = "rocker"\n'
 MECHANISM = ls.SliderCrank(ls.Link(0.04, 1.0, 0.0), ls.Link(0.14, 0.5, 1e-3), slider_mass=0.5)
 
 
@@ -35,9 +36,9 @@ def table(angles, values) -> str:
     return "theta2,P\n" + "".join(f"{angle:g},{value:g}\n" for angle, value in zip(angles, values, strict=True))
 
 
-def write(folder, text, load='force = {csv = "p.csv", column = "P", unit = "kN"}'):
+def write(folder, text, load='force = {csv = "p.csv", column = "P", unit = "kN"}', machine=ENGINE):
     (folder / "p.csv").write_text(text, encoding="utf-8")
-    (folder / "scene.toml").write_text(ENGINE + load + "\n")
+    (folder / "scene.toml").write_text(machine + load + "\n")
     return folder / "scene.toml"
 
 
@@ -82,6 +83,27 @@ def test_columns_may_state_their_units(tmp_path):
     for column in ("P", "P [lbf]"):
         load = f'force = {{csv = "p.csv", column = "{column}", unit = "lbf"}}'
         assert force("theta2,P [lbf]\n0,1\n90,3\n180,2\n270,5\n", load).identical(turns)
+
+
+IN_METRES, IN_DEGREES = {"m": 1.0, "in": 0.0254}, {"deg": 1.0, "rad": 180.0 / np.pi, "rev": 360.0}
+
+
+@pytest.mark.parametrize("column", ['{csv = "p.csv"}', '{dim = "position", position = PLACES, values = [1, 3, 2]}'])
+@pytest.mark.parametrize("unit", [*IN_METRES, *IN_DEGREES])
+@pytest.mark.parametrize(
+    ("machine", "over", "sizes"), [(ENGINE, "slider.to_end", IN_METRES), (PRESS, "rocker.angle", IN_DEGREES)]
+)
+def test_positions_are_in_units_of_what_the_load_follows(tmp_path, machine, over, sizes, unit, column):
+    """Inches of an angle were taken for degrees, and degrees along a guide for metres."""
+    places = str([f"{place} {unit}" for place in (0, 0.5, 1)])
+    load = f'over = "{over}"\ntorque = {column.replace("PLACES", places)}'
+    path = write(tmp_path, f"position [{unit}],T\n0,1\n0.5,3\n1,2\n", load, machine)
+    if unit in sizes:
+        positions = read_scene(path).loads[-1].torque.position
+        np.testing.assert_allclose(positions, np.array([0.0, 0.5, 1.0]) * sizes[unit], rtol=1e-15)
+    else:
+        with pytest.raises(ValueError, match=rf": {unit} is a unit of (angle|length), not of (length|angle); accepted"):
+            read_scene(path)
 
 
 def test_a_column_of_a_saved_result_is_a_load(tmp_path):
@@ -216,7 +238,7 @@ REFUSED = [
     (SOUND.replace("P", "P [lbf]"), CSV + ':1: P is in lbf; leave unit = "kN" out'),
     (SOUND.replace("P", "P [bar]"), CSV + ":1: P [bar]: bar is a unit of pressure, not of force"),
     (SOUND.replace("theta2", "theta2 [mm]"), CSV + ":1: theta2 [mm]: mm is a unit of length, not of angle"),
-    (SOUND.replace("theta2", "position [kg]"), CSV + ":1: position [kg]: kg is a unit of mass, not of length"),
+    (SOUND.replace("theta2", "position"), CSV + ":1: the first column is position, but over is missing; give the load"),
     (SOUND.split("\n", 1)[1], CSV + ":1: the first line must name the columns"),
     (SOUND.replace("P", "Q"), ":15: loads[1].force.column: nothing is named 'P'; there are Q"),
     (SOUND.replace("60,2.5", "60,two"), CSV + ':4: P = "two": must be a number'),

@@ -7,6 +7,8 @@ import pytest
 import xarray as xr
 
 import linksweep as ls
+from linksweep.mechanisms.strokes import kind_of_position
+from linksweep.scene import examples
 from linksweep.scene.file.reading import parse_scene
 from linksweep.scene.file.writing import write_scene
 from linksweep.scene.strokes import stroke_of, zeros_between
@@ -277,3 +279,9 @@ def test_reversals_between_two_samples_are_found():
     away = np.mod(zero - centre[design] + 180.0, 360.0)[order] - 180.0
     np.testing.assert_array_equal(design[order], np.repeat(np.arange(4), 2))
     np.testing.assert_allclose(away, np.ravel([-apart, apart], order="F"), atol=1e-7)
+
+
+@pytest.mark.parametrize("example", examples.names())
+def test_the_name_of_a_position_tells_its_kind(example):
+    strokes = ls.example(example).mechanism.strokes
+    assert {name: kind_of_position(name) for name in strokes} == {name: s.kind for name, s in strokes.items()}
