@@ -8,15 +8,25 @@ from functools import partial
 from typing import Any
 
 from linksweep.base.degrees import cos_sin
-from linksweep.base.fields import POLAR_POINT, PairField, choice, field_problems, of_kind, parameter, word
-from linksweep.base.frozen import with_sound
+from linksweep.base.fields import (
+    ANYTHING,
+    POLAR_POINT,
+    PairField,
+    RowField,
+    choice,
+    field_problems,
+    of_kind,
+    parameter,
+    word,
+)
+from linksweep.base.frozen import normalise, with_sound
 from linksweep.base.units import unit_problems
 from linksweep.base.validate import Number, Rule, choice_problems, quote
 from linksweep.chains.rows.bodies import Body
 from linksweep.chains.rows.load_forms import Acting, Applied, Form
 from linksweep.engine.quantity import Row, Total
 from linksweep.mechanisms import Mechanism
-from linksweep.mechanisms.strokes import Stroke
+from linksweep.mechanisms.strokes import Stroke, kind_of_position
 from linksweep.physics.algebra import planar
 from linksweep.scene.curves.over_position import KINDS as POSITION_KINDS
 from linksweep.scene.curves.over_position import POSITION, at_positions, corners, is_function, is_table, table_problems
@@ -54,7 +64,7 @@ class Load(ChangingLoad):
         Origin of `at`: the link's first "pin", or its centre of gravity, "cg".
     breaks : list of float, default ()
         Angles theta2 [degree] at which force or torque jumps, or is narrower than 0.02 degrees: exact peaks look at
-        both sides of each, and closely between them. Positions of a load over a position.
+        both sides of each, and closely between them. Positions [m] or [degree] of a load over a position.
     interpolation : str, default None
         Curve through DataArrays over theta2, between their angles: "periodic cubic" (a spline; for None), "pchip"
         (monotone between neighbours, does not ring), "linear", or "step" (each value holds up to the next angle).
@@ -112,10 +122,18 @@ class Load(ChangingLoad):
     frame: str = choice("ground", "link")
     torque: Number | None = parameter("torque", None, over_angle=True)
     origin: str = choice("pin", "cg")
-    breaks: Sequence[float] = of_kind(BREAKS, ())
+    breaks: Sequence[float] = of_kind(ANYTHING, ())  # angles or positions: `over` says which
     interpolation: str | None = None
     over: str | None = None
     while_: str | None = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        normalise(self, breaks=self._breaks_kind.converted(self.breaks))
+
+    @property
+    def _breaks_kind(self) -> RowField:
+        return BREAKS if self.over is None else RowField(Rule(kind_of_position(str(self.over))))
 
     @property
     def changing(self) -> tuple[Any, ...]:
@@ -138,6 +156,7 @@ class Load(ChangingLoad):
         """Return the problems of the load on a machine of these links."""
         problems = choice_problems(f"{path}.link", self.link, links)
         problems += self.interpolation_problems(path) + self._position_problems(path)
+        problems += self._breaks_kind.problems(f"{path}.breaks", self.breaks)
         if self.force is None and self.torque is None:
             problems.append(f"{path} has neither force nor torque: give force=(Fx, Fy), torque=..., or both")
         return problems + field_problems(self, path + ".")

@@ -50,6 +50,20 @@ def test_files_keep_breaks_and_read_units():
     assert "breaks" not in write_scene(pushed(1.0))
 
 
+def test_breaks_over_a_position_are_positions():
+    """By definition 30 mm are 0.03 m, and a quarter of a turn 90 degrees."""
+    on_slider = ls.Load("slider", force=-1.0, over="slider.to_end", breaks=["30 mm", 0.05])
+    assert on_slider.breaks == (0.03, 0.05)
+    swinging = ls.Load("rocker", torque=-1.0, over="rocker.angle", breaks=["0.25 rev"])
+    assert swinging.breaks == (90.0,)
+    scene = ls.Scene(ENGINE, omega2=30.0, loads=[on_slider])
+    written = write_scene(scene).replace("breaks = [0.03, ", 'breaks = ["30 mm", ')
+    assert "30 mm" in written
+    assert parse_scene(written) == scene
+    with pytest.raises(ValueError, match=r'^loads\[1\].breaks\[2\] = "9 deg": deg is a unit of angle, not of length'):
+        ls.Scene(ENGINE, omega2=30.0, loads=[ls.Load("slider", force=-1.0, over="slider.to_end", breaks=[0, "9 deg"])])
+
+
 @pytest.mark.parametrize(
     ("breaks", "problem"),
     [
