@@ -82,7 +82,8 @@ def screen(
         besides, however many designs are on it; `linksweep.pareto` of the result returns it.
     bins : int or mapping, default 100
         Number of bins between the least and the largest value of the first 4096 designs, for a histogram of each
-        objective and each limited result; or the edges of the histograms by name: ``{"F32_peak": [0, 500, 900]}``.
+        objective and each limited result; or the edges of the histograms by name, in the units of these
+        results: ``{"F32_peak": [0, 500, 900]}``.
     of : str or iterable of str, default ()
         Names of further quantities, as in `linksweep.peaks`, wanted of the designs that are kept.
     seed : int, default 0

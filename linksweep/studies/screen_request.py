@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from linksweep.base.validate import as_float, count_problems, name_problems, quote, refuse
+from linksweep.base.validate import as_float, count_problems, is_quantity, name_problems, quote, refuse
 from linksweep.base.version import installed_version
 from linksweep.results.compute import by_name, requested
 from linksweep.scene.at_sections import link_of
@@ -90,11 +90,11 @@ def _limit(ends: Any) -> tuple[float, float] | None:
 def _edges(name: str, edges: Any) -> np.ndarray:
     """Return the edges of a histogram."""
     try:
-        array = np.asarray(edges, dtype=float)
+        array = np.empty(0) if is_quantity(edges) else np.asarray(edges, dtype=float)
     except (TypeError, ValueError):
         array = np.empty(0)
     rising = array.ndim == 1 and array.size > 0 and np.isfinite(array).all() and (np.diff(array) > 0.0).all()
-    refuse([] if rising else [f"bins: {name} = {quote(edges)}: must be rising numbers, the edges of its bins"])
+    refuse([] if rising else [f"bins: {name} = {quote(edges)}: must be rising numbers in its unit, the edges of its bins"])
     return array
 
 
