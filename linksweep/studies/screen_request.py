@@ -94,7 +94,7 @@ def _edges(name: str, edges: Any) -> np.ndarray:
     except (TypeError, ValueError):
         array = np.empty(0)
     rising = array.ndim == 1 and array.size > 0 and np.isfinite(array).all() and (np.diff(array) > 0.0).all()
-    refuse([] if rising else [f"bins: {name} = {quote(edges)}: must be rising numbers in its unit, the edges of its bins"])
+    refuse([] if rising else [f"bins: {name} = {quote(edges)}: must be rising numbers in its unit, edges of its bins"])
     return array
 
 

@@ -298,7 +298,7 @@ POUNDS = pint.UnitRegistry().Quantity(np.array([60.0, 75.0]), "lbf")
         ({"subject_to": {"F32_peak": (None, None)}}, "subject_to: F32_peak = (None, None): must be (least, most)"),
         ({"subject_to": ["F32_peak"]}, "subject_to = ['F32_peak']: must give (least, most) by name"),
         ({"bins": {"F32_peak": [1.0, 1.0]}}, "bins: F32_peak = [1.0, 1.0]: must be rising numbers"),
-        ({"bins": {"F32_peak": POUNDS}}, "bins: F32_peak = <Quantity([60. 75.], 'force_pound')>: must be rising numbers"),
+        ({"bins": {"F32_peak": POUNDS}}, "bins: F32_peak = <Quantity([60. 75.], 'force_pound')>: must be rising "),
         ({"path": "screen.csv"}, "screen.csv: its ending must be .nc"),
         ({"client": 3}, "client = 3: must be a client of dask.distributed"),
     ],
