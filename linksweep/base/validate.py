@@ -67,6 +67,16 @@ class Rule:
         unit = {"1": "", "degree": " in degrees"}.get(UNITS[self.kind], f" in {UNITS[self.kind]}")
         return f"a number{unit}"
 
+    @property
+    def named_dimensions(self) -> str:
+        """What to do with values whose dimensions have no names."""
+        if self.over_angle:
+            return (
+                'name its dimension: over the crank angle xarray.DataArray(values, {"theta2": degrees}, "theta2"), '
+                'one value for each design xarray.DataArray(values, dims="design")'
+            )
+        return 'name its dimensions, as in xarray.DataArray(values, dims="design")'
+
     def measured(self, value: float) -> str:
         return f"{value:.15g} {UNITS[self.kind]}".removesuffix(" 1")
 
@@ -115,8 +125,10 @@ def number_problems(path: str, value: Any, rule: Rule) -> list[str]:
         return [] if rule.over_angle else [function]
     if isinstance(value, np.ndarray | list | tuple):
         scalar = isinstance(value, np.ndarray) and value.ndim == 0
-        named = 'name its dimensions, as in xarray.DataArray(values, dims="design")'
-        return [f"{path} = {quote(value)} is a bare array: {'write float(...) of it' if scalar else named}"]
+        start = f"{path} = {quote(value)} is a bare array"
+        return [f"{start}: {'write float(...) of it' if scalar else rule.named_dimensions}"]
+    if hasattr(value, "to_xarray"):  # of pandas: its own to_xarray() would name a dimension of designs
+        return [f"{path} is a {type(value).__name__}: {rule.named_dimensions}"]
     if isinstance(value, bool | np.bool_):
         return [f"{path} = {value}: must be {rule.number}, not a truth value"]
     if isinstance(value, str):

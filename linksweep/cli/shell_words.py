@@ -33,6 +33,12 @@ PHRASES = {
     'name its dimensions, as in xarray.DataArray(values, dims="design")': (
         'name its dimension, as in { dim = "design", values = [...] }'
     ),
+    'name its dimension: over the crank angle xarray.DataArray(values, {"theta2": degrees}, "theta2")': (
+        "over the crank angle give it a CSV table"
+    ),
+    'one value for each design xarray.DataArray(values, dims="design")': (
+        'for several designs write { dim = "design", values = [...] }'
+    ),
     "force=(Fx, Fy), torque=..., or both": "force = [Fx, Fy], torque = ..., or both",
     'give it its angles with coords={"theta2": degrees}': "give it its angles in a CSV table",
     "only Datasets made by linksweep": "only results made by linksweep",

@@ -15,8 +15,10 @@ from linksweep.chains.rows.beams import SECTION
 from linksweep.mechanisms import Mechanism
 from linksweep.scene.storable import label_problem, name_problem
 
-ANGLE = re.compile("(theta|θ)2?(deg|degrees?)?")
+ANGLE = re.compile("((theta|θ)2?|crankangle)(deg|degrees?)?|angledeg(rees?)?")
 """Names that probably mean the index, without signs and spaces."""
+UNNAMED = re.compile(r"dim_\d+")
+"""Names that xarray gives."""
 RESULTS = (
     "status", "arc", "toggle", "spline", "equation", "unknown", SECTION, "pin", "main", "cylinder", "frame", "source",
     "balance", "order", "parameter", "limit", "link", "plane", "criterion", "load_class", "step", "candidate",
@@ -100,6 +102,8 @@ def _name_problems(dim: object, index: str, sharing: Arrays, arrays: Arrays, res
         yield f"{path} has a dimension {quote(dim)}: {problem}; rename it"
     elif ANGLE.fullmatch(re.sub(r"[\W_]", "", unicodedata.normalize("NFKC", str(dim)).casefold())):
         yield f'{path} has a dimension "{dim}": rename it; did you mean "{index}"?'
+    elif UNNAMED.fullmatch(str(dim)):
+        yield f'{path} has a dimension "{dim}", which nobody named: rename it, "{index}" of angles, "design" of designs'
     elif dim in results and [dim, *sharing] != [SECTION, SECTION]:  # `section` itself lies along that dim
         yield f'{path} has a dimension "{dim}": that is the name of a result; rename it'
     elif dim in arrays and arrays[dim].dims != (dim,):

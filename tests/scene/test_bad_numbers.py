@@ -6,6 +6,7 @@ from decimal import Decimal
 from fractions import Fraction
 
 import numpy as np
+import pandas as pd
 import pytest
 import xarray as xr
 from refusals import TURNED, array, coupler, crank, four_bar, load, loop, refusal, rocker, scene, track
@@ -112,7 +113,12 @@ def test_negative_and_zero(number):
 @every_number
 def test_values_that_are_not_numbers(number):
     path, unit, phrase = number.path, number.unit, number.phrase
-    bare = 'is a bare array: name its dimensions, as in xarray.DataArray(values, dims="design")'
+    designs = 'xarray.DataArray(values, dims="design")'
+    named = f"name its dimensions, as in {designs}"
+    if number.over_angle:
+        angles = 'xarray.DataArray(values, {"theta2": degrees}, "theta2")'
+        named = f"name its dimension: over the crank angle {angles}, one value for each design {designs}"
+    bare = f"is a bare array: {named}"
     for value, expected in (
         (np.nan, f"{path} = nan {unit}: must be {number.finite}"),
         (np.float32("nan"), f"{path} = nan {unit}: must be {number.finite}"),
@@ -128,6 +134,8 @@ def test_values_that_are_not_numbers(number):
         ([[1], [1, 2]], f"{path} = [[1], [1, 2]] {bare}"),
         (np.array([0.1, 0.2]), f"{path} = array([0.1, 0.2]) {bare}"),
         (np.array(0.1), f"{path} = array(0.1) is a bare array: write float(...) of it"),
+        (pd.Series([0.1, 0.2], [0.0, 5.0]), f"{path} is a Series: {named}"),
+        (pd.DataFrame({"p": [0.1, 0.2]}), f"{path} is a DataFrame: {named}"),
         (0.1j, f"{path} = 0.1j: must be {phrase}, or an xarray.DataArray of them"),
         (Decimal("0.1"), f"{path} = Decimal('0.1'): must be {phrase}, or an xarray.DataArray of them"),
         ({}, f"{path} = {{}}: must be {phrase}, or an xarray.DataArray of them"),

@@ -151,3 +151,11 @@ def test_dates_of_a_scene_file_are_refused(tmp_path):
     (tmp_path / "scene.toml").write_text(text.replace('"a", "b", "c"', "2020-01-01, 2020-01-02, 2020-01-03"))
     with pytest.raises(ValueError, match=r"has along case the label datetime.date\(2020, 1, 1\): must be a text"):
         ls.load_scene(tmp_path / "scene.toml")
+
+
+def test_a_dimension_that_nobody_named_is_refused():
+    """A DataArray of bare values over the angle would make a design of each of them."""
+    push = ls.Load("coupler", force=(0.0, xr.DataArray([-80.0, -40.0])))
+    (line,) = refusal(replace, ls.example("press"), loads=[push])
+    names = 'rename it, "theta2" of angles, "design" of designs'
+    assert line == f'loads[1].force[2] has a dimension "dim_0", which nobody named: {names}'

@@ -366,7 +366,8 @@ def test_a_function_that_is_not_periodic_is_refused(function, parameter):
 
 
 @pytest.mark.parametrize(
-    "name", ["theta", "Theta2", "theta_2", "THETA", "θ", "θ₂", "theta2 [deg]", "theta-2", "theta2_degrees"]
+    "name",
+    ["theta", "Theta2", "theta_2", "THETA", "θ", "θ₂", "theta2 [deg]", "theta-2", "theta2_degrees", "crank angle"],
 )
 def test_dims_named_almost_like_theta2_are_refused(name):
     (line,) = refusal(scene, torque=xr.DataArray([1.0, 2.0], dims=name))
