@@ -98,7 +98,8 @@ class Linkage(Machine):
     -----
     Dyads close one after the other, from ground and crank on. A pin at which two links meet is open to the left of the
     line between their known pins, that of the first link first; a pin on a guide is open ahead of the known pin along
-    the guide; a link past a pin is open where the pin lies ahead of its first pin.
+    the guide; a link that a known pin guides, past it or in a block on the link, is open where that pin lies ahead of
+    the link's own known pin along its line.
 
     Links have numbers in the order of `links`: 1 ground, 2 crank, and so on; cylinders have none. Forces are `F16` of
     the ground on link 6, else `F65` of the later link on the earlier, from ten links on `F11_3`; of a slide `F16n`
@@ -106,7 +107,8 @@ class Linkage(Machine):
     carries it, and the pins of the others are "C:upper", "C:lower". `linksweep.quantities` lists all names.
 
     The position `x_ram` of a slider counts along its guide from the foot of the crank's pivot on it, on a link from the
-    foot of the link's first pin.
+    foot of the link's first pin. On a link that a known pin guides, `x_arm` or `x_block` counts from the foot of the
+    link's own known pin, whichever is named first.
 
     Examples
     --------

@@ -74,7 +74,7 @@ class Load(ChangingLoad):
         where crank and rod are stretched) [m]; of a `FourBar` "rocker.angle" (`theta4`) [degree]; of an
         `InvertedSliderCrank` "block.position" (`slide`) [m]. Of a `Linkage`, by the name of the part, "ram.position"
         and "ram.to_end" (distance to the farthest position along the guide) of a slider on the ground, "block.position"
-        of one on a link, "rocker.angle" of a link on a ground pin, "c1.length" of a cylinder.
+        of one on a link (`x_block`), "rocker.angle" of a link on a ground pin, "c1.length" of a cylinder.
     while_ : str, default None
         Direction of motion in which it acts: of a slider "closing" (towards its outer dead centre, or along its guide)
         or "opening"; of a block (away from the rocker's pivot, or along its line) and of a cylinder "extending" or

@@ -137,3 +137,14 @@ def test_order_of_the_pins_of_a_link(link):
 def test_order_of_the_pins_of_an_arm_past_a_pin(pins):
     """Whether its known pin J is named first or third, both pins that push a ram keep their places."""
     assert_equal_forces(turned(arm_past_a_pin(), "arm", pins), arm_past_a_pin())
+
+
+@pytest.mark.parametrize("pins", long_but(ARMS, "J-K-L", "K-L-J"))
+def test_the_position_on_an_arm_counts_from_its_known_pin(pins):
+    """From J along the guide to the crank's pin B, which lies ahead of it where the arm is open."""
+    scene = turned(arm_past_a_pin(), "arm", pins)
+    cycle, guide = swept(scene, THETA2), scene.mechanism.guides["arm"]
+    from_J = polar(0.2, THETA2) - complex(*scene.mechanism.ground["J"])
+    ahead = (from_J / polar(1.0, cycle.theta3.values + guide.angle)).real
+    assert (ahead > 0.0).all()
+    np.testing.assert_allclose(cycle.x_arm, ahead, rtol=1e-12)
