@@ -37,7 +37,7 @@ def test_travel(scene):
 
 
 def test_transmission_angles(scene):
-    """Of rod and jack, whose angle passes 90°; the least lies where it is largest."""
+    """The angle between rod and jack passes 90°; the transmission angle is least where that is largest."""
     B, C = pins(np.arange(0.0, 360.0, 0.001))
     between = abs(np.degrees(np.angle((B - C) / (PIVOT - C))))
     assert 90.0 - between.min() < between.max() - 90.0

@@ -135,7 +135,7 @@ def test_order_of_the_pins_of_a_link(link):
 
 @pytest.mark.parametrize("pins", long_but(ARMS, "L-K-J", "K-L-J"))
 def test_order_of_the_pins_of_an_arm_past_a_pin(pins):
-    """Whether its known pin J is named first or third, both pins that push a ram keep their places."""
+    """Both pins that push a ram keep their places, its known pin J named first, second or third."""
     assert_equal_forces(turned(arm_past_a_pin(), "arm", pins), arm_past_a_pin())
 
 
