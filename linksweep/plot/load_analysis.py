@@ -147,10 +147,14 @@ def over_speed(scene: Scene, of: str, *, speeds: Any, below: float | None = None
     symbol, units = signals.symbol(of) or of, system.unit(force)
     speeds, sizes = system.value(values, "rad/s"), system.value(worst.values, force)
     most = None if below is None else system.value(float(checked_number("below", below, LIMITS[force])), force)
-    ax.plot(speeds, sizes, color=BLUE, label=f"peak of {symbol}")
+    ax.plot(speeds, sizes, "-" if len(speeds) > 1 else "o", color=BLUE, label=f"peak of {symbol}")
     ax.axhline(rest, color=GREY, linestyle="--", linewidth=1.0, label="at rest: weight and loads")
-    ax.set_xlim(float(speeds.min()), float(speeds.max()))
-    ax.set_ylim(0.0, ROOM * max(float(sizes.max()), most or 0.0) or 1.0)
+    if len(speeds) > 1:
+        ax.set_xlim(float(speeds.min()), float(speeds.max()))
+    largest = float(np.max(sizes, initial=0.0, where=np.isfinite(sizes)))
+    ax.set_ylim(0.0, ROOM * max(largest, most or 0.0) or 1.0)
+    if np.isinf(sizes).any():
+        ax.set_title("grows without bound at speeds without a curve", loc="left", fontsize="small", color=GREY)
     if limit is not None:
         _mark_limit(ax, system.value(limit, "rad/s"), float(most or 0.0), units, system)
     ax.set(
@@ -161,17 +165,20 @@ def over_speed(scene: Scene, of: str, *, speeds: Any, below: float | None = None
 
 
 def _mark_limit(ax: Axes, limit: float, below: float, units: str, system: UnitSystem) -> None:
+    """Draw the limit of the peak, and a dot where each direction of the crank reaches it."""
     from linksweep.plot.kit.labels import label
 
-    speed = f"{limit:.5g} {system.unit('rad/s')}"
-    range_text = {np.inf: "at any speed"}.get(limit, "at none" if np.isnan(limit) else f"up to {speed}")
+    low, high = ax.get_xlim()
+    signed = f"{'±' if low < 0.0 else ''}{limit:.5g} {system.unit('rad/s')}"
+    range_text = {np.inf: "at any speed"}.get(limit, "at none" if np.isnan(limit) else f"up to {signed}")
     text = f"limit, {signals.number(below)} {units}: kept {range_text}"
     ax.axhline(below, color=VERMILION, linewidth=1.0, label=text)
-    if ax.get_xlim()[0] <= limit <= ax.get_xlim()[1]:
-        ax.plot([limit], [below], "o", color=VERMILION, markersize=5.0, label="_limit")
-        label(
-            ax,
-            limit,
-            below,
-            (f"{speed} = {limit * 30.0 / np.pi:.5g} rpm" if speed.endswith("rad/s") else speed, VERMILION),
-        )
+    for place in (limit, -limit):
+        if low <= place <= high:
+            ax.plot([place], [below], "o", color=VERMILION, markersize=5.0, label="_limit")
+            label(ax, place, below, (_speed_text(place, system).replace("-", "−"), VERMILION))
+
+
+def _speed_text(speed: float, system: UnitSystem) -> str:
+    text = f"{speed:.5g} {system.unit('rad/s')}"
+    return f"{text} = {speed * 30.0 / np.pi:.5g} rpm" if text.endswith("rad/s") else text

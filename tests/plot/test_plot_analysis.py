@@ -125,6 +125,29 @@ def test_a_limit_off_the_axis_is_stated_in_the_legend(below, message):
     assert ax.get_ylim()[1] > max(below, line(ax, "peak of $F_{32}$").get_ydata().max())
 
 
+@pytest.mark.parametrize(("speeds", "marks"), [((-50.0, -30.0, -10.0), [-1.0]), ((-50.0, 0.0, 50.0), [-1.0, 1.0])])
+def test_a_limit_is_marked_in_each_direction_of_the_crank(speeds, marks):
+    """Weight, loads and inertia forces are the same in both."""
+    limit = float(ls.speed_limit(PRESS, "F32", below=500.0).omega2_limit)
+    ax = ls.plot.over_speed(PRESS, "F32", speeds=speeds, below=500.0)
+    dots = sorted(mark.get_xdata()[0] for mark in ax.lines if mark.get_label() == "_limit")
+    np.testing.assert_allclose(dots, limit * np.array(marks))
+    assert f"up to ±{limit:.5g} rad/s" in ax.get_legend().get_texts()[-1].get_text()
+
+
+def test_the_peak_at_one_speed_is_a_dot():
+    ax = ls.plot.over_speed(PRESS, "F32", speeds=[30.0])
+    assert line(ax, "peak of $F_{32}$").get_marker() == "o"
+    assert ax.get_xlim()[0] < 30.0 < ax.get_xlim()[1]
+
+
+def test_speeds_at_which_a_force_has_no_bound_are_left_out():
+    """At rest without weight and loads there is no force; with inertia there is no bound beside the toggles."""
+    ax = ls.plot.over_speed(replace(SWING, gravity=(0.0, 0.0)), "F32", speeds=[0.0, 10.0, 20.0])
+    assert ax.get_ylim() == (0.0, 1.0)
+    assert ax.get_title(loc="left") == "grows without bound at speeds without a curve"
+
+
 def test_an_unbounded_force_is_written_as_infinity_in_its_load_diagram():
     written = "\n".join(texts(ls.sweep(SWING).linksweep.bearing("F12")))
     assert "= ∞ N" in written
