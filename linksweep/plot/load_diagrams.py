@@ -64,7 +64,9 @@ def bearing(ds: xr.Dataset, of: str = "F32", *, frame: str = "ground", ax: Axes 
     drawing = drawing_of_results(ds)
     link = drawing.link_of(of, frame)
     ax, units = axes_or_new(ax, figsize=SIZE), signals.unit(signals.components(ds, of)[0], "N")
-    draw_locus(ax, of, angles, x, y, units, size=signals.revolution(ds, signals.magnitude(ds, of))[1])
+    magnitude = signals.magnitude(ds, of)
+    size, nothing = signals.revolution(ds, magnitude)[1], signals.reasons(ds, magnitude)
+    draw_locus(ax, of, angles, x, y, units, size=size, nothing=nothing)
     ax.set(xlabel=f"{_axis(drawing, of, link, 'x')} [{units}]", ylabel=f"{_axis(drawing, of, link, 'y')} [{units}]")
     return ax
 

@@ -59,9 +59,11 @@ def hodograph(ds: xr.Dataset, of: str = "Fs", *, ax: Axes | None = None) -> Axes
     refuse([f"ds has no {part}: sweep with of=[..., {part!r}]" for part in missing])
     angles, x, y = signals.revolution(ds, ds[f"{of}x"], ds[f"{of}y"])
     ax, units = axes_or_new(ax, figsize=SIZE), signals.unit(ds[f"{of}x"], "N")
-    draw_locus(ax, of, angles, x, y, units, min(angles[-1], angles[0] + 359.0))  # inertia is the same in all turns
+    last = min(angles[-1], angles[0] + 359.0)  # inertia is the same in all turns
+    draw_locus(ax, of, angles, x, y, units, last, nothing=signals.reasons(ds, ds[f"{of}x"]))
     words = "shaking force" if of == "Fs" else "force"
-    ax.set(xlabel=f"{words} $F_{{{of[1:]}x}}$ [{units}]", ylabel=f"{words} $F_{{{of[1:]}y}}$ [{units}]")
+    across, up = (f"{words} {signals.force_symbol(of + axis)} [{units}]" for axis in "xy")
+    ax.set(xlabel=across, ylabel=up)
     return ax
 
 
@@ -126,7 +128,7 @@ def orders(ds: xr.Dataset, of: Iterable[str] | None = None, *, ax: Axes | None =
 
 def _legend_text(name: str, amplitude: xr.DataArray) -> str:
     """Return the legend of a signal, with its largest order."""
-    text = f"$F_{{{name[1:]}}}$" if name[0] == "F" else signals.symbol(name) or name.replace("_", " ")
+    text = signals.force_symbol(name) if name[0] == "F" else signals.symbol(name) or name.replace("_", " ")
     if not np.nansum(amplitude.values) > 0.0:
         return text
     largest = amplitude.isel(order=int(np.nanargmax(amplitude.values)))

@@ -8,6 +8,7 @@ import xarray as xr
 from drawn import closed_figures, line, texts  # noqa: F401
 
 import linksweep as ls
+from linksweep.plot.kit import signals
 from linksweep.plot.kit.with_peaks import with_peaks
 
 PRESS = ls.example("press")
@@ -146,6 +147,32 @@ def test_speeds_at_which_a_force_has_no_bound_are_left_out():
     ax = ls.plot.over_speed(replace(SWING, gravity=(0.0, 0.0)), "F32", speeds=[0.0, 10.0, 20.0])
     assert ax.get_ylim() == (0.0, 1.0)
     assert ax.get_title(loc="left") == "grows without bound at speeds without a curve"
+
+
+def test_load_diagrams_without_any_result_say_why():
+    beyond = np.linspace(150.0, 210.0, 7)  # crank pin 0.29 m and more from D, coupler and rocker 0.23 m long
+    cycle, shaking = ls.sweep(SWING, beyond), ls.sweep(SWING, beyond, of=["Fsx", "Fsy"])
+    for ax in (cycle.linksweep.bearing("F32"), *cycle.linksweep.bearings().axes[:4], ls.plot.hodograph(shaking)):
+        assert [text.get_text() for text in ax.texts] == ["cannot assemble"]
+
+
+@pytest.mark.parametrize(
+    ("name", "symbol"),
+    [("Fs", "F_{s}"), ("F32x", "F_{32x}"), ("F1_12", "F_{1,12}"), ("F1_12y", "F_{1,12y}"), ("F_main1", "F_{main1}")],
+)
+def test_a_force_of_later_links_has_a_comma(name, symbol):
+    assert signals.force_symbol(name) == f"${symbol}$"
+
+
+def test_hodographs_and_orders_of_a_main_bearing_name_its_force():
+    cycle = ls.MultiCylinder(ls.example("engine"), [0, 360], positions=[0.0, 0.1]).sweep(
+        90, of=["F_main1x", "F_main1y"]
+    )
+    ax = ls.plot.hodograph(cycle, "F_main1")
+    assert ax.get_xlabel() == "force $F_{main1x}$ [N]"
+    assert "$F_{main1}$ = " in "\n".join(texts(ax))
+    (text,) = ls.plot.orders(ls.orders(cycle, "F_main1y", n=4)).get_legend().get_texts()
+    assert text.get_text().startswith("$F_{main1y}$, largest")
 
 
 def test_an_unbounded_force_is_written_as_infinity_in_its_load_diagram():

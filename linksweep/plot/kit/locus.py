@@ -28,10 +28,12 @@ def draw_locus(
     units: str,
     last: float | None = None,
     size: np.ndarray | None = None,
+    nothing: str = "no result",
 ) -> None:
     """Draw the locus of a force, dots on it up to the last angle, and an arrow from the origin to the largest force.
 
-    A `size` that is infinite where x and y are large beside a toggle says that the force has no bound there.
+    A `size` that is infinite where x and y are large beside a toggle says that the force has no bound there; `nothing`
+    is why there is no force at any angle.
     """
     size = np.hypot(x, y) if size is None else size
     largest = signals.peak(angles, size)
@@ -39,6 +41,9 @@ def draw_locus(
     draw_cross(ax)
     ax.plot(x, y, color=BLUE, label=f"_locus {name}")
     tip = np.zeros(2)
+    if largest is None:
+        look = {"facecolor": "white", "linewidth": 0.0, "pad": 2.0}
+        ax.text(0.5, 0.5, nothing, transform=ax.transAxes, ha="center", va="center", color=GREY, bbox=look)
     if largest and largest.value > 0.0:
         k = int(np.nanargmax(size))
         force = np.array([x[k], y[k]])
@@ -95,7 +100,7 @@ def _arrow(ax: Axes, name: str, largest: signals.Peak, force: np.ndarray, units:
     tip = force * (BEYOND * usual / np.hypot(*force)) if beyond else force
     direction = np.degrees(np.arctan2(force[1], force[0]))
     lines = (
-        f"$F_{{{name[1:]}}}$ = {signals.number(largest.value)} {units}",
+        f"{signals.force_symbol(name)} = {signals.number(largest.value)} {units}",
         f"{'off scale ' * beyond}at $\\theta_2$ = {signals.angle_text(largest.angle)}",
         f"direction {direction:.1f}°".replace("-", "−"),
     )

@@ -168,6 +168,11 @@ def gaps(ds: xr.Dataset, signal: xr.DataArray) -> list[Gap]:
     return intervals
 
 
+def reasons(ds: xr.Dataset, signal: xr.DataArray) -> str:
+    """Return the reasons for the gaps of a cycle, each once."""
+    return ", ".join(dict.fromkeys(gap.reason for gap in gaps(ds, signal)))
+
+
 def peak(angles: np.ndarray, values: np.ndarray) -> Peak | None:
     """Return the largest sample, or None where there is no result at all."""
     if np.isnan(values).all():
@@ -227,6 +232,11 @@ def angle_text(angle: float) -> str:
 def symbol(name: str) -> str:
     """Return F32 in mathtext, F11_3 with a comma; nothing for a name in words."""
     return f"${name[0]}_{{{name[1:].replace('_', ',')}}}$" if pair_of(name) else ""
+
+
+def force_symbol(name: str) -> str:
+    """Return a force in mathtext, also a shaking force or a component: Fs, F43x, F1_12y with a comma."""
+    return f"$F_{{{name[1:].strip('_').replace('_', ',')}}}$"
 
 
 def drive_kind(name: str) -> str:
