@@ -37,11 +37,13 @@ function number(value, digits = 4) {
   return text.replace(/-/g, "−");
 }
 
-// A number with the same count of decimals whatever its value, so that it does not jump while it changes.
+// A number with the same count of decimals, and power of ten, whatever its value, so that it does not jump while it
+// changes.
 function steady(value, top) {
   if (!Number.isFinite(value)) return "–";
-  const decimals = Math.min(4, Math.max(0, 2 - Math.floor(Math.log10(top || 1))));
-  return value.toFixed(decimals).replace(/-/g, "−");
+  const decade = Math.floor(Math.log10(top || 1)), power = decade < -2 || decade > 6 ? decade : 0;
+  const text = (value / 10 ** power).toFixed(Math.max(0, 2 - decade + power)) + (power ? `e${power}` : "");
+  return text.replace(/-/g, "−");
 }
 
 // Round numbers from low to high, about as many as asked for.
