@@ -122,8 +122,9 @@ class Machine {
     this.loads = new Loads(cycle.loads, this.layers.arrows, this.layers.names);
     while (this.centres.length < cycle.centres.length) this.centres.push(this.layers.centres.appendChild(this.centre()));
     this.centres.splice(cycle.centres.length).forEach(made => made.remove());
-    const [a, b] = this.picture.links[0].pins.map(pin => at(cycle.pins[pin], 0));
-    if (this.held !== this.picture.links[0].pins[1]) this.crank = Math.hypot(...less(b, a));
+    const [pivot, end] = this.picture.links[0].pins, centre = at(cycle.pins[pivot], 0), ends = cycle.pins[end];
+    const turned = Array.from({length: count(ends)}, (_, k) => at(ends, k)).find(known); // where it can be assembled
+    if (this.held !== end && turned) this.crank = Math.hypot(...less(turned, centre));
     this.frame();
   }
 
