@@ -69,6 +69,20 @@ def test_the_crank_turns_with_its_pin_and_keeps_the_coupler():
     assert move.angle == pytest.approx(90.0)
 
 
+@pytest.mark.parametrize(("angle", "by"), [(450.0, 1.0), (719.5, 1.0), (0.5, -1.0), (90.0, -1.0)])
+def test_the_crank_of_a_four_stroke_engine_stays_in_its_stroke(angle, by):
+    scene = ls.example("engine")
+    direction = math.radians(angle + by)
+    place = (0.043 * math.cos(direction), 0.043 * math.sin(direction))
+    assert dragged(scene, "B", place, angle).angle == pytest.approx((angle + by) % 720.0)
+
+
+@pytest.mark.parametrize("name", MACHINES)
+def test_every_handle_is_of_a_pin_that_has_a_place(name):
+    session = Session(ls.example(name), "")
+    assert {*handles(ls.example(name))} <= {*ask(session, "start")["cycle"]["pins"]}
+
+
 def test_a_ground_pin_takes_length_and_angle_of_the_frame():
     move = dragged(ls.example("press"), "D", (0.18, -0.18), 10.0)
     assert move.numbers == pytest.approx({"ground": 0.18 * math.sqrt(2.0), "ground_angle": -45.0})

@@ -1,7 +1,8 @@
 """Dragging a pin: the lengths, and the place on the ground, that put it under the mouse.
 
-Every other pin stays where it is. A link between two pins gets the distance between them; its third pins get new polar
-coordinates in its axes; a ground pin gets a new place. The crank turns with its pin, and all that hangs on it moves.
+The other pins stay where they are, but for those that a slide or a cylinder places. A link between two pins gets the
+distance between them; its third pins get new polar coordinates in its axes. A ground pin gets a new place, and its
+links, which keep their lengths, follow it. The crank turns with its pin, and all that hangs on it moves.
 """
 
 from __future__ import annotations
@@ -27,13 +28,14 @@ class Move(NamedTuple):
 
 
 def handles(scene: Scene) -> list[str]:
-    """Return the pins that can be dragged."""
+    """Return the pins that can be dragged: those that have a place, and numbers that move them."""
     joined = getattr(scene.mechanism, "topology", None)
     if joined is None:
         return []
-    here = dict.fromkeys(joined.members, np.zeros(2))
-    plain = values(scene)
-    return [pin for pin in joined.members if {*_numbers(scene, joined, here, pin, np.ones(2))} & {*plain}]
+    here, drawing = dict.fromkeys(joined.members, np.zeros(2)), drawing_of(scene.mechanism)
+    shown, plain = [*drawing.fixed(scene.mechanism), *drawing.moving], values(scene)
+    drawn = [pin for pin in joined.members if pin in shown]
+    return [pin for pin in drawn if {*_numbers(scene, joined, here, pin, np.ones(2))} & {*plain}]
 
 
 def dragged(scene: Scene, pin: str, place: tuple[float, float], angle: float) -> Move:
@@ -54,7 +56,8 @@ def dragged(scene: Scene, pin: str, place: tuple[float, float], angle: float) ->
     numbers = {path: value for path, value in _numbers(scene, joined, here, pin, there).items() if path in plain}
     refuse([] if numbers else [f"pin {pin}: no plain number of the scene moves it"])
     pivot, end = joined.pins_of(joined.crank)[:2]
-    return Move(numbers, _direction(there - here[pivot]) % scene.period if pin == end else angle)
+    turned = _within_half_turn(_direction(there - here[pivot]) - angle) if pin == end else 0.0
+    return Move(numbers, (angle + turned) % scene.period)
 
 
 def _numbers(
