@@ -17,8 +17,9 @@ from linksweep.plot.kit.colors import BLACK, GREY, LOAD, SKY, force_color
 from linksweep.plot.kit.drawings import drawing_of
 from linksweep.plot.kit.load_parts import draw_loads
 from linksweep.plot.kit.load_symbols import LoadSymbol, loads_at
-from linksweep.plot.kit.shape import Shape, Slide, block_corners, half_side, positions, shape_of, slideway
+from linksweep.plot.kit.shape import Shape, Slide, block_corners, half_side, part_of, positions, shape_of, slideway
 from linksweep.plot.kit.style import axes_or_new, grid, show_lengths
+from linksweep.results.peak_search.paths import Part
 from linksweep.results.sweep import sweep
 from linksweep.scene.scene import Scene
 from linksweep.scene.shown_units import UnitSystem, shown_units
@@ -43,7 +44,8 @@ def mechanism(
     Parameters
     ----------
     scene : Scene or Dataset
-        Scene of one design, or a Dataset from `linksweep.sweep` that holds it.
+        Scene of one design, or a Dataset from `linksweep.sweep` that holds it: then the curve is over its angles, where
+        they are no whole turn.
     theta2 : float, default 45.0
         Crank angle [degree].
     ax : matplotlib Axes, default None
@@ -74,10 +76,24 @@ def mechanism(
     >>> ls.plot.mechanism(ls.example("press"), theta2=30.0, forces=True).get_xlabel()
     'x [m]'
     """
-    scene = scene if isinstance(scene, Scene) else scene_of(scene, whole=False)
+    if isinstance(scene, Scene):
+        return draw_machine(scene, None, theta2, ax, point, link, forces)
+    return draw_machine(scene_of(scene, whole=False), part_of(scene), theta2, ax, point, link, forces)
+
+
+def draw_machine(
+    scene: Scene,
+    part: Part | None,
+    theta2: float,
+    ax: Axes | None = None,
+    point: tuple[float, float] | None = None,
+    link: str | None = None,
+    forces: bool = False,
+) -> Axes:
+    """Draw a machine as `mechanism` does, with the curve of its point over a part of the turn, or all of it."""
     drawing = drawing_with_point(scene, link)
     angle = crank_angle(theta2)
-    cycle = positions(scene, drawing, [angle])
+    cycle = positions(scene, drawing, [angle], part)
     require_assembled(cycle, angle, scene.period_of_motion)
     shape = shape_of(scene, drawing, cycle, point)
     acting = _joint_forces(scene, drawing, angle) if forces else {}

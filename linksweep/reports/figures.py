@@ -17,7 +17,9 @@ from linksweep.analysis.pins.breakdown import breakdown
 from linksweep.mechanisms.drawing import Drawing
 from linksweep.plot.cycle_page import most_loaded
 from linksweep.plot.kit import signals
+from linksweep.plot.kit.shape import part_of
 from linksweep.plot.kit.style import SMALL
+from linksweep.plot.machine import draw_machine
 from linksweep.reports.markup import Markup, symbol, tag
 from linksweep.reports.results_of_page import STEPS, Results
 from linksweep.results.sweep import sweep
@@ -63,7 +65,7 @@ def _of_cycle(results: Results, drawing: Drawing) -> Iterator[Picture]:
     bounded = np.isfinite(results.peaks[f"{force}_peak"])
     what = f"Largest pin force: {symbol(force)} at" if bounded else "Beside where pin forces are infinite:"
     title = f"{what} θ₂ = {where:.1f}°"
-    yield Picture(title, SIZE, partial(plot.mechanism, results.scene, where, forces=True))
+    yield Picture(title, SIZE, partial(draw_machine, results.scene, part_of(ds), where, forces=True))
     yield Picture("Forces in the joints", SIZE, partial(plot.forces, ds))
     kind = signals.drive_kind(signals.drive_name(ds)).capitalize()
     yield Picture(kind, SIZE, partial(plot.torque, ds))

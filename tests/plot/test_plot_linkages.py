@@ -62,6 +62,20 @@ def test_a_cycle_of_a_press_has_all_forces_in_its_legend():
     assert ax.get_ylabel() == "pin and slide force [N]"
 
 
+def test_over_a_part_of_the_turn_the_point_has_that_part_of_its_curve():
+    """The tip of an excavator's bucket over 0 to 40 degrees, in its drawing, its cycle and its film."""
+    scene = ls.example("excavator")
+    ds = ls.sweep(scene, range(41))
+    tip = ls.sweep(scene, np.linspace(0.0, 40.0, 721), of=["Tx", "Ty"])
+    expected = [tip.Tx.values, tip.Ty.values]
+    figures = ds.linksweep.mechanism(20.0).figure, ds.linksweep.cycle(), plot.animate(ds, frames=2).figure
+    for figure in figures:
+        np.testing.assert_allclose(line(figure.axes[0], "_coupler curve").get_data(), expected, atol=1e-9)
+    for whole in (scene, ls.sweep(scene, 360)):
+        x, y = line(plot.mechanism(whole, 20.0), "_coupler curve").get_data()
+        assert (x[0], y[0]) == (x[-1], y[-1]) and len(x) == 721
+
+
 def test_a_report_lists_ground_pins_guides_and_branches():
     page = str(settings(ls.example("knuckle-press")))
     for row in ("ground pin D", "guide slide", "branch of C"):

@@ -22,6 +22,7 @@ from linksweep.plot.kit.load_symbols import LoadSymbol, loads_at
 from linksweep.plot.kit.shape import Shape, half_side, positions, shape_of
 from linksweep.plot.kit.style import show_lengths
 from linksweep.plot.machine import draw_links
+from linksweep.results.peak_search.paths import Part
 from linksweep.results.sweep import sweep
 from linksweep.scene.scene import Scene
 from linksweep.scene.shown_units import UnitSystem
@@ -132,12 +133,13 @@ def _at_equal_times(angles: np.ndarray, rate: np.ndarray, count: int) -> np.ndar
     return np.interp(np.linspace(0.0, time[-1], count), time, angles)
 
 
-def frames_of(scene: Scene, drawing: Drawing, angles: np.ndarray, point: Any) -> list[Frame]:
-    """Return the frames at those of these angles that have a result."""
+def frames_of(scene: Scene, drawing: Drawing, angles: np.ndarray, point: Any, part: Part | None = None) -> list[Frame]:
+    """Return the frames at those of these angles that have a result, with curves over a part of the turn or all of
+    it."""
     cycle = sweep(scene, angles, of=[f"{force}{axis}" for force in drawing.forces for axis in "xy"])
     good = np.flatnonzero(signals.spread(cycle["status"], len(angles)) == 0)
     refuse([] if len(good) > 1 else [NOTHING])
-    places = positions(scene, drawing, angles.tolist())
+    places = positions(scene, drawing, angles.tolist(), part)
     parts = {force: _rows(cycle, force) for force in drawing.forces}
     loads = loads_at(scene, drawing, places, angles.tolist())
     curve = places.sizes[signals.INDEX] - len(angles)

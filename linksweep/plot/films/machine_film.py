@@ -24,6 +24,7 @@ from linksweep.plot.films.frames import (
     way,
 )
 from linksweep.plot.kit import signals
+from linksweep.plot.kit.shape import part_of
 from linksweep.plot.kit.style import show_lengths
 from linksweep.plot.machine import ARROW, draw_ground
 from linksweep.results.origin.in_shown_units import results_in_shown_units
@@ -49,7 +50,7 @@ def film_of_crank(scene: Scene, drawing: Drawing, angles: Any, frames: int, poin
     outputs = [*(f"{force}{axis}" for force in drawing.forces for axis in "xy"), drive]
     cycle = sweep(scene, angles, of=[*outputs, "omega2"])
     signals.require_one_design(cycle[name] for name in outputs)
-    shots = frames_of(scene, drawing, way(cycle, cycle["omega2"], frames), point)
+    shots = frames_of(scene, drawing, way(cycle, cycle["omega2"], frames), point, part_of(cycle))
     system, at = shown_units(scene.units), [shot.angle for shot in shots]
     efforts = signals.spread(results_in_shown_units(sweep(scene, at, of=[drive]))[drive], len(shots))
     figure, machine, (curves, effort) = panels(1.0, EFFORT)

@@ -13,6 +13,7 @@ from linksweep.base.degrees import cos_sin
 from linksweep.chains.between_links import is_pin
 from linksweep.mechanisms.drawing import Block, Drawing, Frame
 from linksweep.plot.kit import signals
+from linksweep.results.peak_search.paths import Part
 from linksweep.results.sweep import sweep
 from linksweep.scene.scene import Scene
 
@@ -45,7 +46,7 @@ class Shape(NamedTuple):
 
     pins: dict[str, np.ndarray]
     centres: dict[int, np.ndarray]  # of links that have a mass, by number
-    curve: np.ndarray  # (2, angles), closed
+    curve: np.ndarray  # (2, angles), closed over a whole turn
     point: np.ndarray
     slides: tuple[Slide, ...]
     shortest: tuple[float, ...]
@@ -66,14 +67,27 @@ class Shape(NamedTuple):
         )
 
 
-def positions(scene: Scene, drawing: Drawing, angles: Sequence[float]) -> xr.Dataset:
-    """Return the positions of the pins until they repeat and, behind them, at these angles, with their status."""
+def part_of(ds: xr.Dataset) -> Part | None:
+    """Return the first and the last crank angle [degree] of results; None of whole turns, and of one angle or none."""
+    if ds.sizes.get(signals.INDEX, 0) < 2:
+        return None
+    angles = np.sort(ds[signals.INDEX].values.astype(float))
+    whole = ds.attrs.get(signals.WHOLE_TURN, signals.full_turn(angles))
+    return None if whole else (float(angles[0]), float(angles[-1]))
+
+
+def positions(
+    scene: Scene, drawing: Drawing, angles: Sequence[float] | np.ndarray, part: Part | None = None
+) -> xr.Dataset:
+    """Return the positions of the pins, until they repeat or over a part of the turn, and behind them at these angles,
+    with their status."""
     set_aside: dict[str, Any] = dict(drawing.ideal)
     geometry = Scene(replace(scene.mechanism, **set_aside), omega2=0.0)
     outputs = [f"{pin}{axis}" for pin in drawing.moving for axis in "xy"]
     outputs += [name for name in drawing.angles if name in geometry.table.quantity]
     count = CURVE * round(geometry.period / geometry.mechanism.period)
-    cycle = sweep(geometry, theta2=np.append(np.arange(count) * (geometry.period / count), angles), of=outputs)
+    way = np.arange(count) * (geometry.period / count) if part is None else np.linspace(*part, CURVE + 1)
+    cycle = sweep(geometry, theta2=np.append(way, angles), of=outputs)
     signals.require_one_design(cycle.values())
     return cycle
 
@@ -81,7 +95,7 @@ def positions(scene: Scene, drawing: Drawing, angles: Sequence[float]) -> xr.Dat
 def shape_of(scene: Scene, drawing: Drawing, cycle: xr.Dataset, point: Any) -> Shape:
     """Return the machine's shape at the last angle of a cycle, with the curves over the others."""
     places = places_of(scene, drawing, cycle)
-    path = curve_of(scene, drawing, cycle, places, point)
+    path, whole = curve_of(scene, drawing, cycle, places, point), signals.full_turn(cycle[signals.INDEX].values[:-1])
     slides = (
         Slide(places[block.pin] - (places[block.on[1]] if block.on else 0.0), axes_of(scene, cycle, block.sides))
         for block in drawing.blocks
@@ -90,7 +104,7 @@ def shape_of(scene: Scene, drawing: Drawing, cycle: xr.Dataset, point: Any) -> S
     return Shape(
         pins={pin: places[pin][:, -1] for pin in sorted(places)},
         centres={number: place[:, -1] for number, place in centres_of(scene, drawing, cycle, places).items()},
-        curve=np.append(path[:, :-1], path[:, :1], axis=1),
+        curve=np.append(path[:, :-1], path[:, :1], axis=1) if whole else path[:, :-1],
         point=path[:, -1],
         slides=tuple(slides),
         shortest=tuple(float(np.nanmin(length)) for length in lengths),
