@@ -12,9 +12,10 @@ from linksweep.analysis.drive.duty import duty, turning_problems
 from linksweep.analysis.drive.flywheel import flywheel
 from linksweep.analysis.pins.bearings import bearings
 from linksweep.base.validate import refuse
+from linksweep.plot.curves import STYLES
 from linksweep.reports import scene_tables
 from linksweep.reports import tables as page_tables
-from linksweep.reports.figures import SIZE, Picture, of_shaking, pictures
+from linksweep.reports.figures import SIZE, Picture, legend_below, of_shaking, pictures
 from linksweep.reports.markup import NONE, Markup, angle, joined, section, symbol, table, tag, tiny
 from linksweep.reports.results_of_page import fluctuations
 from linksweep.reports.units_of_page import distance, measure
@@ -124,9 +125,11 @@ def _figures(machine: MultiCylinder, mains: xr.Dataset | None) -> Iterator[Pictu
 
 
 def _over_angle(signals: list[xr.DataArray], label: str, ax: Any) -> None:
-    for signal in signals:
-        ax.plot(signal["theta2"], signal, label=str(signal.coords["main"].item()) if "main" in signal.coords else None)
+    for k, signal in enumerate(signals):
+        color, dashes = STYLES[k % len(STYLES)]
+        main = str(signal.coords["main"].item()) if "main" in signal.coords else None
+        ax.plot(signal["theta2"], signal, color=color, linestyle=dashes, label=main)
     ax.set(xlabel="crank angle θ₂ [°]", ylabel=label)
     ax.margins(x=0.0)
     if len(signals) > 1:
-        ax.legend(fontsize="small", ncols=3)
+        legend_below(ax)

@@ -63,7 +63,7 @@ def _of_cycle(results: Results, drawing: Drawing) -> Iterator[Picture]:
     ds = results.cycle
     force, where = worst(results, drawing)
     bounded = np.isfinite(results.peaks[f"{force}_peak"])
-    what = f"Largest pin force: {symbol(force)} at" if bounded else "Beside where pin forces are infinite:"
+    what = f"Largest pin force: {symbol(force)} at" if bounded else "Beside infinite pin forces:"
     title = f"{what} θ₂ = {where:.1f}°"
     yield Picture(title, SIZE, partial(draw_machine, results.scene, part_of(ds), where, forces=True))
     yield Picture("Forces in the joints", SIZE, partial(plot.forces, ds))
@@ -73,7 +73,7 @@ def _of_cycle(results: Results, drawing: Drawing) -> Iterator[Picture]:
         return
     shares = breakdown(results.scene, force, theta2=ds[signals.INDEX].values[::STEPS])
     title = f"Where the load of {drawing.joint_text(force)} comes from: {symbol(force)}"
-    yield Picture(title, SIZE, lambda ax: _legend_below(plot.breakdown(shares, force, ax=ax)))
+    yield Picture(title, SIZE, lambda ax: legend_below(plot.breakdown(shares, force, ax=ax)))
 
 
 def _of_bearings(results: Results, drawing: Drawing) -> Iterator[Picture]:
@@ -122,8 +122,8 @@ def worst(results: Results, drawing: Drawing) -> tuple[str, float]:
     return most_loaded(results.cycle)
 
 
-def _legend_below(ax: Axes) -> None:
-    """Move the legend below the axes, where it takes no width."""
+def legend_below(ax: Axes) -> None:
+    """Move the legend below the axes, where it takes no width and hides nothing."""
     legend, entries = ax.get_legend(), ax.get_legend_handles_labels()
     if legend is not None:
         legend.remove()
