@@ -5,6 +5,7 @@ import sys
 from dataclasses import replace
 
 import matplotlib as mpl
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 import xarray as xr
@@ -13,6 +14,7 @@ from refusals import refusal
 
 import linksweep as ls
 from linksweep.plot.kit.colors import FORCE_COLORS
+from linksweep.reports.cylinder_page import _over_angle
 
 mpl.use("Agg")
 ENGINE = ls.example("engine")
@@ -40,6 +42,30 @@ def test_throws_are_drawn_side_by_side_at_their_crank_angles(k):
     torque = sum(ls.sweep(ENGINE, [(60.0 * k + ahead) % 720.0], of=["T12"]).T12.item() for ahead in [0, 540, 180, 360])
     (dot,) = curve.collections[-1].get_offsets()
     np.testing.assert_allclose(dot, [60.0 * k, torque], rtol=1e-9)
+
+
+def test_every_throw_has_its_numbers_across_and_the_first_those_upwards():
+    film = ls.plot.animate(FOUR, frames=2)
+    film.figure.canvas.draw()
+    *throws, _ = film.figure.axes
+    for ax in throws:
+        assert ax.get_xlabel() == "x [m]"
+        assert any(text.get_text() and text.get_visible() for text in ax.get_xticklabels())
+    assert [ax.get_ylabel() for ax in throws] == ["y [m]", "", "", ""]
+
+
+def test_lines_of_main_bearings_differ_without_their_colours_and_the_legend_hides_none():
+    main = ls.bearings(FOUR).F
+    figure = plt.figure(layout="constrained")
+    ax = figure.add_subplot()
+    _over_angle([main.sel(main=name) for name in main.main.values[:5]], "force [N]", ax)
+    looks = {(line.get_color(), line.get_linestyle()) for line in ax.lines}
+    assert len(looks) == len(ax.lines) == 5
+    assert len({line.get_linestyle() for line in ax.lines}) > 1
+    figure.canvas.draw()
+    (legend,) = figure.legends
+    assert legend.get_window_extent().y1 < ax.get_window_extent().y0
+    plt.close(figure)
 
 
 def test_banks_share_one_crank():

@@ -53,7 +53,9 @@ def film_of_cylinders(machine: MultiCylinder, frames: int, title: str) -> Film:
         every: list[film_frames.Frame] = [shot for k in there for shot in shots[k]]
         film_frames.fit(ax, drawing, every, scale, system)
         ax.set_title(", ".join(str(k + 1) for k in there), loc="right", fontsize="small")
-        ax.label_outer()
+        if not ax.get_subplotspec().is_first_col():  # type: ignore[union-attr]
+            ax.tick_params(labelleft=False)
+            ax.set_ylabel("")
     film_frames.draw_scale(panels[0], scale, system)
     curve.plot(cycle["theta2"], cycle["T12"])
     unit = system.unit("N m")
