@@ -33,9 +33,9 @@ def handles(scene: Scene) -> list[str]:
     if joined is None:
         return []
     here, drawing = dict.fromkeys(joined.members, np.zeros(2)), drawing_of(scene.mechanism)
-    shown, plain = [*drawing.fixed(scene.mechanism), *drawing.moving], values(scene)
-    drawn = [pin for pin in joined.members if pin in shown]
-    return [pin for pin in drawn if {*_numbers(scene, joined, here, pin, np.ones(2))} & {*plain}]
+    plain, pins = values(scene), {*drawing.fixed(scene.mechanism), *drawing.moving}
+    in_place = [pin for pin in joined.members if pin in pins]
+    return [pin for pin in in_place if {*_numbers(scene, joined, here, pin, np.ones(2))} & {*plain}]
 
 
 def dragged(scene: Scene, pin: str, place: tuple[float, float], angle: float) -> Move:
