@@ -49,6 +49,11 @@ def unit_of(values: xr.DataArray) -> str:
     return str(values.attrs.get("units", ""))
 
 
+def plain_unit(values: xr.DataArray) -> str:
+    """Return the unit of a variable as a table shows it: the sign of degrees, nothing for a ratio."""
+    return PLAIN_UNITS.get(unit_of(values), unit_of(values))
+
+
 def with_unit(value: float, units: str, significant: int = 6) -> str:
     """Return a number with its unit, "12.3 N m" or "45°"."""
     unit = PLAIN_UNITS.get(units, units)

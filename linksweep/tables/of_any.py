@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.mechanisms import indices
-from linksweep.tables.cells import digits, in_words, label, meanings, unit_of
+from linksweep.tables.cells import digits, in_words, label, meanings, plain_unit, unit_of
 from linksweep.tables.table import Part, Row, Table
 
 MOST_DIMS = 2
@@ -63,7 +63,7 @@ def _values(ds: xr.Dataset, names: list[str]) -> Table:
             at = f"{angle:.2f}°" if np.isfinite(angle) else ""
             title = f"{name} ({', '.join(where)})" if where else name
             value = float(ds[name].values[place])
-            known = (title, "none", "") if np.isnan(value) else (title, digits(value), _plain(unit_of(ds[name])))
+            known = (title, "none", "") if np.isnan(value) else (title, digits(value), plain_unit(ds[name]))
             rows.append((*known, at))
     cut = 4 if any(row[3] for row in rows) else 3
     header = ("quantity", "value", "unit", "at")
@@ -83,9 +83,9 @@ def _ranges(ds: xr.Dataset, names: list[str]) -> Table:
     for name in names:
         if ds[name].size and np.isfinite(ds[name].values).any():
             least, largest = (_end(ds, name, sign) for sign in (1.0, -1.0))
-            rows.append((name, *least, *largest, _plain(unit_of(ds[name]))))
+            rows.append((name, *least, *largest, plain_unit(ds[name])))
         else:
-            rows.append((name, "none", "", "none", "", _plain(unit_of(ds[name]))))
+            rows.append((name, "none", "", "none", "", plain_unit(ds[name])))
     header = ("quantity", "least", f"at {over}", "largest", f"at {over}", "unit")
     return Table(header, rows, right=(1, 2, 3, 4), meanings=meanings(ds))
 
@@ -100,7 +100,3 @@ def _end(ds: xr.Dataset, name: str, sign: float) -> tuple[str, str]:
 
 def _place(ds: xr.Dataset, dim: Hashable, k: int) -> str:
     return f"{float(ds[dim].values[k]):.2f}°" if dim in indices() and dim in ds.coords else str(label(ds, dim, k))
-
-
-def _plain(units: str) -> str:
-    return {"degree": "°", "1": ""}.get(units, units)

@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from math import prod
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from linksweep.mechanisms import Mechanism
-from linksweep.tables.cells import at, counts_of_words, digits, label, meanings, place_of_worst, unit_of
+from linksweep.results.peaks import quantity_of
+from linksweep.tables.cells import at, counts_of_words, digits, label, meanings, place_of_worst, plain_unit
+from linksweep.tables.of_balance import ROUNDING
 from linksweep.tables.table import Part, Row, Table
+
+ANGLE, SIGNED = "transmission_angle", "_signed"
+"""Beginning of the names of angles of which the largest minimum is the best, and the word of those with a sign."""
 
 
 def peak_parts(ds: xr.Dataset, machine: type[Mechanism] | Mechanism) -> Iterator[Part]:
@@ -22,13 +28,18 @@ def peak_parts(ds: xr.Dataset, machine: type[Mechanism] | Mechanism) -> Iterator
 
 
 def study_parts(ds: xr.Dataset, machine: type[Mechanism] | Mechanism) -> Iterator[Part]:
-    """Yield the tables of a study: the worst and the best design of each peak, and the number of designs by status."""
+    """Yield the tables of a study: the worst and the best design of each peak, the designs of the largest transmission
+    angles, and the number of designs by status."""
     yield from peak_parts(ds, machine)
     if not ds.sizes:
         return
-    rows = [_best(ds, str(name)) for name in ds.data_vars if str(name).endswith("_peak")]
-    header = ("quantity", "least peak", "unit", *(f"best {dim}" for dim in ds.sizes))
-    yield Table(header, [*filter(None, rows)], meanings=meanings(ds))
+    names = [str(name) for name in ds.data_vars if SIGNED not in str(name)]
+    angles = [name for name in names if name.startswith(ANGLE) and name.endswith("_min")]
+    peaks = [name for name in names if name.endswith("_peak") and not name.startswith(ANGLE)]
+    for title, each, sign in (("least peak", peaks, 1.0), ("largest", angles, -1.0)):
+        rows = [_best(ds, name, sign) for name in each]
+        header = ("quantity", title, "unit", *(f"best {dim}" for dim in ds.sizes))
+        yield Table(header, [*filter(None, rows)], meanings=meanings(ds))
     shape = ", ".join(f"{dim} {n}" for dim, n in ds.sizes.items())
     designs = prod(ds.sizes.values())
     shared = designs // (ds.status.size or 1)
@@ -43,20 +54,27 @@ def _row(ds: xr.Dataset, name: str) -> Row:
     place = place_of_worst(values)
     angle = f"{at(ds[f'{name}_at'], place):.2f}°" if f"{name}_at" in ds else ""
     labels = (label(ds, dim, place.get(dim)) for dim in ds.sizes)
-    return name, digits(at(values, place)), unit_of(values), angle, *labels
+    return name, digits(_without_rounding(ds, name, place)), plain_unit(values), angle, *labels
+
+
+def _without_rounding(ds: xr.Dataset, name: str, place: Mapping[Any, int]) -> float:
+    """Return an extreme at a place; 0 where it is only rounding beside the largest magnitude there."""
+    value, peak = at(ds[name], place), f"{quantity_of(name)}_peak"
+    return 0.0 if peak in ds and abs(value) <= ROUNDING * at(ds[peak], place) < np.inf else value
 
 
 def _remarks(ds: xr.Dataset, machine: type[Mechanism] | Mechanism) -> list[str]:
     """Return the meaning of the status of peaks in sentences, where it is not ok throughout."""
     status = np.asarray(ds.status.values).reshape(-1)
     partly, never, unbounded = (int((status == k).sum()) for k in (1, 2, 3))
-    who, which = "It does", ""
+    who, which, none = "It does", "", "It has"
     if status.size > 1:
         who, which = f"{partly} of {status.size} designs do", f" of {unbounded} of {status.size} designs"
+        none = f"{never} of {status.size} designs have"
     infinite = "grows without bound at a toggle, where it wedges or at a dead centre: its peak is inf."
     lines = {
         f"{who} not {machine.runs} all the way round: peaks are those of the {machine.spot}s that are ok.": partly,
-        f"{never} of {status.size} designs: no result at any {machine.spot}, {machine.round_meanings[2]}.": never,
+        f"{none} no result at any {machine.spot}: {machine.round_meanings[2].replace('_', ' ')}.": never,
         f"Some quantity{which} {infinite}": unbounded,
     }
     ends = [str(name).removesuffix("_at_end") for name in ds.data_vars if _at_an_end(ds, str(name))]
@@ -69,12 +87,13 @@ def _at_an_end(ds: xr.Dataset, name: str) -> bool:
     return name.endswith("_at_end") and bool(ds[name].isin((1, 2)).any())
 
 
-def _best(ds: xr.Dataset, name: str) -> Row:
-    """Return a peak where it is least, of the designs that are ok all the way round; empty where there is none."""
-    values = ds[name].where(ds.status == 0)
+def _best(ds: xr.Dataset, name: str, sign: float) -> Row:
+    """Return a result where it is least, with sign −1 largest, of the designs that are ok all the way round; empty
+    where there is none."""
+    values = sign * ds[name].where(ds.status == 0)
     size = values.where(np.isfinite(values), np.inf)
     if not np.isfinite(size).any():
         return ()
     place = size.argmin(...)
     labels = (label(ds, dim, place.get(dim)) for dim in ds.sizes)
-    return name, digits(float(size.min())), unit_of(ds[name]), *labels
+    return name, digits(sign * float(size.min())), plain_unit(ds[name]), *labels

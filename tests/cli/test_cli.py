@@ -166,7 +166,7 @@ def test_peaks_of_a_batch_name_the_worst_design(capsys):
         assert table[name][3] == f"{float(peaks.crank.isel(place)):.6g}"
     assert table["T12_mean"][-1] == f"{float(peaks.crank[int(abs(peaks.T12_mean).argmax('crank'))]):.6g}"
     assert "Some quantity of 1 of 5 designs grows without bound at a toggle" in out
-    assert "1 of 5 designs: no result at any crank angle, cannot_assemble." in out
+    assert "1 of 5 designs have no result at any crank angle: cannot assemble." in out
 
 
 def test_a_quantity_independent_of_a_dimension_is_worst_at_any(capsys):

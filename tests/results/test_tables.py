@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pint
 import pytest
+import xarray as xr
 
 import linksweep as ls
 from linksweep.cli.main import main
@@ -182,6 +183,35 @@ def test_every_machine_is_checked_in_the_same_words():
         assert titles["can be assembled"] == "everywhere"
         assert titles["at theta2 from"] == "0.0000° to 360.0000°"
         assert titles["toggles at theta2"] == "none"
+
+
+def test_the_best_transmission_angle_is_the_largest_of_the_least():
+    """The least angle is that of the crank in line with the ground, by the law of cosines."""
+    lengths = [0.18, 0.2, 0.22]
+    table = repr(ls.peaks(ls.grid(PRESS, {"coupler.length": lengths}), of=["transmission_angle"]).linksweep)
+    crank, rocker, ground = 0.08, 0.18, 0.2
+
+    def least(coupler: float) -> float:
+        squares = ((ground + sign * crank) ** 2 for sign in (1, -1))
+        angles = [np.degrees(np.arccos((coupler**2 + rocker**2 - s) / (2.0 * coupler * rocker))) for s in squares]
+        return min(min(angle, 180.0 - angle) for angle in angles)
+
+    best = max(lengths, key=least)
+    assert ["transmission_angle_min", f"{least(best):.6g}", "°", f"{best}"] in cells(table)
+    assert "least peak" not in table
+
+
+def test_a_machine_that_reaches_its_toggle_has_an_acute_angle_of_0_there():
+    short = ls.FourBar(*(ls.Bar(length, 0.02, 0.02, 7750.0) for length in (0.08, 0.1, 0.1)), ground=0.2)
+    rows = cells(repr(ls.peaks(ls.Scene(short, omega2=30.0), of=["transmission_angle"]).linksweep))
+    assert ["transmission_angle_min", "0", "°"] in [row[:3] for row in rows]
+
+
+def test_a_machine_that_cannot_be_assembled_has_no_peaks():
+    apart = replace(PRESS, mechanism=replace(PRESS.mechanism, ground=xr.DataArray([5.0], dims="place")))
+    table = repr(ls.peaks(apart, of=["F32"]).linksweep)
+    assert ["F32_peak", "none"] in cells(table)
+    assert "It has no result at any crank angle: cannot assemble." in table
 
 
 def test_a_torque_that_is_only_rounding_prints_as_zero():
