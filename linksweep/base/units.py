@@ -215,12 +215,12 @@ def _parted(text: str, kind: str) -> tuple[str, str]:
 
 
 def _comma(text: str) -> str | None:
-    """Advise on "2,5 mm" and "1,500 rpm"."""
+    """Advise on "2,5 mm" and "1,500 rpm", of which the decimal is written so that it does not look like thousands."""
     if not (match := _COMMAS.match(text)):
         return None
     number, rest = match.groups()
     point, plain = number.replace(",", "."), number.replace(",", "")
-    meant = [point] if _NUMBER.fullmatch(point) else []
+    meant = [f"{float(point):.15g}"] if _NUMBER.fullmatch(point) else []
     meant += [plain] if _THOUSANDS.fullmatch(number) or not meant else []
     written = " or ".join(f'"{item}{rest}"' for item in meant)
     return f"a comma in a number is not read; write {written}"

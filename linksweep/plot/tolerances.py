@@ -56,7 +56,8 @@ def tornado(ds: xr.Dataset, of: str | None = None, *, most: int = 12, ax: Axes |
     name = known[0] if of is None else name_in_results(ds, of)
     refuse(name_problems("of", name, known))
     several = [str(dim) for dim in ds[f"{name}_share"].dims if dim != "parameter"]
-    refuse([f"ds has several designs, over {several[0]}: take one, as ds.isel({several[0]}=0)"] if several else [])
+    one = f"take one, as ds.isel({dict.fromkeys(several, 0)})"
+    refuse([f"ds has several designs, over {', '.join(several)}: {one}"] if several else [])
     ds = in_shown_units(ds)
     nominal, sigma = float(ds[name]), float(ds[f"{name}_sigma"])
     finite = np.isfinite(nominal) and np.isfinite(sigma)

@@ -110,7 +110,8 @@ def ready(task: Screening, n: int, further: list[str]) -> tuple[Screening, dict[
     pilot = task.peaks(first, task.quantities)
     if further:
         task.peaks(range(1), [*task.quantities, *further])
-    refuse([line for name in task.names for line in name_problems("of", name, map(str, pilot.variables))])
+    results = [*map(str, pilot.variables)]
+    refuse([line for name in task.names for line in name_problems(_parameter(task, name), name, results)])
     values = values_of(pilot, task.names)
     edges = {name: _between(values[name], len(own)) if np.isnan(own[0]) else own for name, own in task.edges.items()}
     words = tuple(str(pilot["status"].attrs["flag_meanings"]).split())
@@ -122,6 +123,12 @@ def ready(task: Screening, n: int, further: list[str]) -> tuple[Screening, dict[
     designs = draw(task.scene, task.parameters, designs=first, seed=task.seed)
     manifest = {"n": n, "scene": scene_digest(designs), "request": request, "version": installed_version()}
     return replace(task, edges=edges, words=words), manifest
+
+
+def _parameter(task: Screening, name: str) -> str:
+    """Return the parameter that names a result."""
+    purposes = {1.0: "minimize", -1.0: "maximize"}
+    return purposes.get(task.objectives.get(name, 0.0), "subject_to" if name in task.limits else "bins")
 
 
 def _between(values: np.ndarray, count: int) -> np.ndarray:

@@ -217,6 +217,7 @@ def test_the_table_names_bearing_size_life_and_safety():
         ({"static_safety": 0}, "static_safety = 0: must be a number greater than 0"),
         ({"kind": "needle"}, "kind = 'needle': must be one of ball, roller"),
         ({"series": "64"}, "series = '64': must be one of 60, 62, 63"),
+        ({"series": 62}, "series = 62: must be one of 60, 62, 63"),
         ({"series": []}, "series: is empty; name one or more of 60, 62, 63"),
         ({"bore": {"E": 0.02}}, "bore: nothing is named 'E'; there are A, B, C, D"),
         ({"bore": "20 kg"}, 'bore = "20 kg": kg is a unit of mass'),

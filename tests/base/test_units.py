@@ -123,7 +123,8 @@ REFUSED = [
     ("-1-1/2 in", "length", 'write the decimal number, "-1.5 in"'),
     ("3/4 in", "length", 'write the decimal number, "0.75 in"'),
     ("2,5 mm", "length", '"2,5 mm": a comma in a number is not read; write "2.5 mm"'),
-    ("1,500 rpm", "angular_velocity", 'a comma in a number is not read; write "1.500 rpm" or "1500 rpm"'),
+    ("1,500 rpm", "angular_velocity", 'a comma in a number is not read; write "1.5 rpm" or "1500 rpm"'),
+    ("20,000 h", "life", 'a comma in a number is not read; write "20 h" or "20000 h"'),
     ("1,500.5 rpm", "angular_velocity", 'write "1500.5 rpm"'),
     ("1,500,000 rpm", "angular_velocity", 'write "1500000 rpm"'),
     # not one number and one unit

@@ -67,6 +67,7 @@ def test_a_cycle_on_its_motor_has_its_exact_extremes():
         (lambda ds: ds.drop_vars("speed_max"), "ds has no cycle on a motor: take what ls.steady_cycle returns"),
         (lambda ds: ds.assign(status=ds.status.copy(data=2)), "ds has no speed: on its motor the machine stalls"),
         (lambda ds: ds.expand_dims(design=2), "there are several designs, over design"),
+        (lambda ds: ds.expand_dims({"coupler.length": 2}), r"such as ds.isel\({'coupler.length': 0}\)"),
         (lambda ds: ds.isel(theta2=slice(5, 9)), "ds has a part of the cycle: take all angles of ls.steady_cycle"),
     ],
 )

@@ -147,6 +147,8 @@ def tolerance(
 
 def _choices(scene: Scene, tolerances: Any) -> dict[str, Choice]:
     """Return the tolerances with names of ISO 286 as limits."""
+    if not isinstance(tolerances, Mapping) or not tolerances:
+        refuse([f'tolerances = {quote(tolerances)}: must name what varies, as in {{"crank.length": "h9"}}'])
     refuse([line.replace("parameters", "tolerances", 1) for line in parameter_problems(scene, tolerances)])
     own, choices, problems = free(scene), dict[str, Choice](), []
     for path, choice in tolerances.items():

@@ -21,7 +21,6 @@ from linksweep.analysis.pins.catalogue import SIZES, DeepGroove, catalogue
 from linksweep.base.units import quantity
 from linksweep.base.validate import as_float, choice_problems, name_problems, quote, refuse
 from linksweep.engine.threads import limits_threads
-from linksweep.results.compute import requested
 from linksweep.results.dataset import by_command, flags, with_units
 from linksweep.scene.scene import Scene
 
@@ -185,7 +184,7 @@ def _problems(static_safety: Any, series: Any) -> list[str]:
     number = as_float(static_safety)
     sound = number is not None and 0.0 < number < np.inf
     problems = [] if sound else [f"static_safety = {quote(static_safety)}: must be a number greater than 0"]
-    names = requested("series", series)
+    names = [series] if isinstance(series, str) or not isinstance(series, Iterable) else list(series)
     problems += [] if names else ["series: is empty; name one or more of 60, 62, 63"]
     return problems + [line for name in names for line in choice_problems("series", name, SIZES)]
 

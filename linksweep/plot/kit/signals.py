@@ -101,7 +101,7 @@ def require_one_design(signals: Iterable[xr.DataArray]) -> None:
     """Raise ValueError where signals have other dims than theta2."""
     sizes = {dim: n for signal in signals for dim, n in signal.sizes.items() if dim != INDEX}
     over = ", ".join(f"{dim} ({n})" for dim, n in sizes.items())
-    choice = f"choose it, such as ds.isel({', '.join(f'{dim}=0' for dim in sizes)})"
+    choice = f"choose it, such as ds.isel({dict.fromkeys(sizes, 0)})"  # names such as coupler.length are no keywords
     refuse([f"there are several designs, over {over}: a plot shows one; {choice}"] if sizes else [])
 
 

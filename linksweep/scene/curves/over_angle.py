@@ -249,14 +249,14 @@ def period_problems(
     beginning = f"{path}: its {len(known)} angles from {known[0]:g} to {known[-1]:g} degrees"
     span, steps = known[-1] - known[0], interpolation == "step"
     least = 2 if steps else 3
-    if len(known) < least + (span == period) or span > period:
-        angles = f"{least} different angles within one period of {period:g} degrees"
-        return [f"{beginning} cannot be joined; give at least {angles}"]
     if span == period and not np.array_equal(values[0], values[-1]):
         return [
             f"{path}: its values at {known[0]:g} and {known[-1]:g} degrees differ, but they are the same position; "
             f"make them equal or leave one out"
         ]
+    if len(known) < least + (span == period) or span > period:
+        angles = f"{least} different angles within one period of {period:g} degrees"
+        return [f"{beginning} cannot be joined; give at least {angles}"]
     gap = np.diff(known, append=known[0] + period).max()
     if gap > 0.5 * period and not steps:
         return [f"{beginning} leave {gap:g} of {period:g} degrees open; give values all the way round"]

@@ -128,6 +128,7 @@ def test_designs_have_each_their_own():
     ("made", "words"),
     [
         ({"crank.lenght": "js9"}, "did you mean"),
+        (0.0001, 'tolerances = 0.0001: must name what varies, as in {"crank.length": "h9"}'),
         ({"omega2": "h7"}, "class of lengths"),
         ({"crank.length": "H77"}, "crank.length = 'H77': grade 77: must be from 5 to 14"),
         ({"ground": 0.1}, "must be ls.Tolerance"),

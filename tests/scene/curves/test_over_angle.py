@@ -294,6 +294,11 @@ REFUSED = [
         "make them equal or leave one out",
     ),
     (
+        over_angles([1.0, 2.0, 1.5], [0.0, 200.0, 360.0]),
+        "torque: its values at 0 and 360 degrees differ, but they are the same position; "
+        "make them equal or leave one out",
+    ),
+    (
         over_angles([1.0, 2.0, 3.0, 4.0], [0.0, 30.0, 60.0, 100.0]),
         "torque: its 4 angles from 0 to 100 degrees leave 260 of 360 degrees open; give values all the way round",
     ),
