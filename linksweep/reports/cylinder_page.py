@@ -8,7 +8,7 @@ from typing import Any
 
 import xarray as xr
 
-from linksweep.analysis.drive.duty import duty, turning_problems
+from linksweep.analysis.drive.duty import cycle_problems, duty
 from linksweep.analysis.drive.flywheel import flywheel
 from linksweep.analysis.pins.bearings import bearings
 from linksweep.base.validate import refuse
@@ -39,7 +39,7 @@ def parts_of(machine: MultiCylinder) -> dict[str, Any]:
     engine = machine.engine
     if design_labels(engine):
         refuse(["engine: has several designs, and a report shows one; give one"])
-    refuse(turning_problems(engine))
+    refuse(cycle_problems(engine))
     worst = peaks(machine, of=[*SIGNALS, *(f"{name}_bound" for name in SIGNALS), *PINS])
     refuse([] if int(worst["status"]) == 0 else ["engine: must run all the way round; ls.check tells where it ends"])
     mains = bearings(machine) if machine.mains else None

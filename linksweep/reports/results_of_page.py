@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.analysis.design.geometry import geometry
-from linksweep.analysis.drive.duty import duty, steady_problems, turning_problems
+from linksweep.analysis.drive.duty import cycle_problems, duty, steady_problems
 from linksweep.analysis.drive.flywheel import flywheel
 from linksweep.analysis.strength.material import Material
 from linksweep.analysis.strength.strength import strength
@@ -103,7 +103,7 @@ def results_of(scene: Scene, part: Range | None = None, material: Steel | None =
     if not results.linkage or part is not None:
         return results
     results = results._replace(geometry=geometry(scene))
-    if turning_problems(scene) or not results.whole:
+    if cycle_problems(scene) or not results.whole:
         return results
     wheel = None if steady_problems(scene) else flywheel(scene, fluctuation=fluctuations())
     return results._replace(duty=duty(scene), flywheel=wheel)

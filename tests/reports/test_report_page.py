@@ -2,6 +2,7 @@
 
 import base64
 import re
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from unittest import mock
@@ -174,6 +175,12 @@ def test_loads_of_all_kinds_are_described():
     assert text["load 2"] == "Torsion damper (from ground, to crank, coefficient 0.2 N m s/rad)"
     assert text["load 3"] == "−3 to 3 N m on the rocker"
     assert text["gravity"] == "none"
+
+
+def test_a_crank_with_alpha2_beside_a_constant_speed_has_no_work_of_a_cycle(tmp_path):
+    ls.report(replace(ls.example("press"), alpha2=-40.0), tmp_path / "page.html")
+    drive = Page((tmp_path / "page.html").read_text("utf-8")).rows("Drive")
+    assert "power" in drive and "work fed in a cycle" not in drive
 
 
 def test_the_page_contains_the_scene(press):

@@ -66,7 +66,7 @@ def duty(scene: Scene | MultiCylinder, *, threads: int | None = None) -> xr.Data
     Raises
     ------
     ValueError
-        If the machine has no crank, or the crank stands still or turns back.
+        If the machine has no crank, the crank stands still or turns back, or alpha2 stands beside a constant omega2.
 
     Examples
     --------
@@ -86,7 +86,7 @@ def duty(scene: Scene | MultiCylinder, *, threads: int | None = None) -> xr.Data
     """
     one = one_cylinder(scene)
     require(one, "drives")
-    refuse(turning_problems(one))
+    refuse(cycle_problems(one))
     drive = one.mechanism.drives[one.drive]
     work = {**WORK, **LOSS} if "friction_power" in one.table.quantity else WORK
     entries = {name: (source.format(drive=drive), words) for name, (source, words) in {**OF_DRIVE, **work}.items()}
@@ -113,9 +113,18 @@ def turning_problems(scene: Scene) -> list[str]:
     return []
 
 
+def cycle_problems(scene: Scene) -> list[str]:
+    """List why the motion of a scene is that of no cycle: alpha2 beside a constant omega2 is that of one instant."""
+    if problems := turning_problems(scene):
+        return problems
+    alpha2 = None if scene.changes_speed else scene.at(scene.grid(round(2.0 * scene.period))).alpha2
+    instant = "alpha2: a constant omega2 has none over a cycle; leave it out, or give omega2 over the angle"
+    return [instant] if alpha2 is not None and np.any(np.not_equal(alpha2, 0.0)) else []
+
+
 def steady_problems(scene: Scene) -> list[str]:
     """List why a scene has no crank that turns steadily."""
     if scene.changes_speed:
         index = scene.mechanism.index
         return [f"omega2: changes with {index}, but its flywheel makes the speed change; give the mean speed"]
-    return turning_problems(scene)
+    return cycle_problems(scene)

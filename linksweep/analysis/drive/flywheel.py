@@ -103,8 +103,8 @@ def flywheel(
     Raises
     ------
     ValueError
-        If fluctuation and inertia are both given or both left out, a number is out of bounds, or the crank stands still
-        or changes its speed.
+        If fluctuation and inertia are both given or both left out, a number is out of bounds, or the crank stands
+        still, changes its speed or has an alpha2.
 
     Notes
     -----

@@ -80,6 +80,7 @@ def test_designs_and_broken_cycles():
     [
         (ls.Scene(FOUR_BAR, 0.0), "omega2 = 0 rad/s: must turn"),
         (ls.Scene(FOUR_BAR, lambda theta2: 30.0 * np.cos(np.radians(theta2))), "omega2: changes its sign over theta2"),
+        (ls.Scene(FOUR_BAR, 30.0, -40.0), "alpha2: a constant omega2 has none over a cycle; leave it out"),
         (ls.example("loop"), "which has no crank"),
     ],
 )
@@ -185,7 +186,7 @@ def test_a_torque_of_second_order_on_a_crank_without_mass_by_hand():
 @MACHINES
 @pytest.mark.parametrize("omega2", [30.0, -30.0])
 def test_the_speed_solves_the_equation_of_motion(mechanism, omega2):
-    scene = ls.Scene(mechanism, omega2, 55.0, gravity=(1.0, -9.81), loads=[ls.Load("crank", torque=-2.0), SPRING])
+    scene = ls.Scene(mechanism, omega2, gravity=(1.0, -9.81), loads=[ls.Load("crank", torque=-2.0), SPRING])
     wheel = ls.flywheel(scene, inertia=0.05)
     speed = np.append(wheel.speed.values, wheel.speed.values[0])
     np.testing.assert_allclose(0.5 * (wheel.speed_max + wheel.speed_min), omega2, rtol=1e-12)
@@ -261,6 +262,14 @@ def test_designs_fluctuations_and_broken_cycles():
 def test_refusals_of_flywheel(words, message):
     with pytest.raises(ValueError, match=message):
         ls.flywheel(ls.Scene(FOUR_BAR, 30.0), **words)
+
+
+@pytest.mark.parametrize(
+    "alpha2", [-40.0, xr.DataArray([0.0, 5.0], dims="case"), lambda theta2: np.sin(np.radians(theta2))]
+)
+def test_a_crank_with_alpha2_beside_a_constant_speed_runs_through_no_cycle(alpha2):
+    with pytest.raises(ValueError, match="alpha2: a constant omega2 has none over a cycle"):
+        ls.flywheel(ls.Scene(FOUR_BAR, 30.0, alpha2), fluctuation=0.02)
 
 
 # --------------------------------------------------------------------------------------------------- motor
