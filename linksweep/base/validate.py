@@ -277,7 +277,8 @@ def closest(word: Any, known: Iterable[str]) -> str:
     """Return the known name that a misspelt word most likely means; empty where none is close."""
     spelled = {name.lower(): name for name in known}
     word = str(word).lower()
-    close = difflib.get_close_matches(word, spelled, n=1, cutoff=0.6)
+    close = [name for name in spelled if name.startswith((f"{word}_", f"{word}.")) or word.startswith(f"{name}.")]
+    close += difflib.get_close_matches(word, spelled, n=1, cutoff=0.6)
     close += [name for name in spelled if f"{name}_".startswith(f"{word}_") or word.startswith(f"{name}_")]
     return spelled[close[0]] if close else ""
 

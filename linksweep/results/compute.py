@@ -25,6 +25,11 @@ SEVERAL = (
     "scene is a MultiCylinder: must be a Scene, such as its engine; for several cylinders there are its sweep(), "
     "ls.peaks, ls.duty, ls.flywheel, ls.bearings, ls.report, ls.plot.animate"
 )
+WAYS = {
+    "Dataset": "take that of the results, ds.linksweep.scene",
+    "str": 'read one, as ls.load_scene("scene.toml") or ls.example("press")',
+}
+"""Ways to a Scene from what is no Scene, by its type."""
 
 
 def requested(path: str, names: Any, scene: Any = None) -> list[str]:
@@ -106,7 +111,8 @@ def quantity_problems(path: str, name: str, known: Iterable[str], scene: Scene) 
 def require_scene(scene: Any) -> None:
     """Raise ValueError for anything but a Scene."""
     kind = type(scene).__name__
-    problem = SEVERAL if kind == "MultiCylinder" else f"scene is a {kind}: must be a Scene; make one with ls.Scene(...)"
+    way = WAYS.get(kind, "make one with ls.Scene(...)")
+    problem = SEVERAL if kind == "MultiCylinder" else f"scene is a {kind}: must be a Scene; {way}"
     refuse([] if isinstance(scene, Scene) else [problem])
 
 

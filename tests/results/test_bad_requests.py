@@ -203,6 +203,14 @@ def test_crank_angles_that_are_some(theta2, angles):
 @pytest.mark.parametrize(
     ("request_", "message"),
     [
+        (
+            lambda: ls.peaks(ls.peaks(SCENE)),
+            "scene is a Dataset: must be a Scene; take that of the results, ds.linksweep",
+        ),
+        (
+            lambda: ls.check("press"),
+            'scene is a str: must be a Scene; read one, as ls.load_scene("scene.toml") or ls.exa',
+        ),
         (lambda: ls.sweep(SCENE, 8, of=["T21"]), "of: nothing is named 'T21'; did you mean \"T12\"?"),
         (lambda: ls.sweep(SCENE, 8, of="t12"), "of: nothing is named 't12'; did you mean \"T12\"?"),
         (

@@ -92,6 +92,8 @@ def test_a_grid_is_stored_and_found_again(tmp_path):
     [
         ({}, "parameters = {}: must name what varies"),
         ({"coupler.lenth": [1.0]}, "parameters: nothing is named 'coupler.lenth'; did you mean \"coupler.length\"?"),
+        ({"coupler": [0.2]}, "parameters: nothing is named 'coupler'; did you mean \"coupler.length\"?"),
+        ({"ground.length": [0.2]}, "parameters: nothing is named 'ground.length'; did you mean \"ground\"?"),
         ({"ground": 0.2}, "ground: 0.2: must be a list of values, a range (low, high, count), or a DataArray"),
         ({"ground": "20 cm"}, "ground: '20 cm': must be a list"),
         ({"ground": []}, r"ground: []: must be a list"),
