@@ -40,7 +40,8 @@ def add_commands(commands: Commands) -> None:
     drive = commands.add(
         "flywheel", _flywheel, "power and work of the drive, and the flywheel that evens its speed", task="Drive"
     )
-    drive.add_argument("--fluctuation", type=float, default=0.02, help="coefficient of speed fluctuation (0.02)")
+    coefficient = 'coefficient of speed fluctuation, such as "2 %%" (0.02)'
+    drive.add_argument("--fluctuation", type=a_number("dimensionless"), default=0.02, help=coefficient)
     add_plot(drive)
 
     add = partial(commands.add, task="Balance")

@@ -148,7 +148,8 @@ def load_scene(path: str | os.PathLike[str]) -> Scene:
     if path.suffix.lower() == ".toml":
         return read_scene(path)
     if not path.exists():
-        near = did_you_mean(path.name, [file.name for file in path.parent.glob("*")] if path.parent.is_dir() else [])
+        files = [file.name for file in path.parent.glob("*")] if path.parent.is_dir() else []
+        near = did_you_mean(path.name, [*files, *names()])
         there = f'; of the example write ls.example("{path}")' if str(path) in names() else near
         raise ValueError(f"{path}: there is no such file{there}")
     if kind := kind_of(path):

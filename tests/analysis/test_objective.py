@@ -341,6 +341,7 @@ def test_the_worst_of_load_cases_has_its_own_gradient():
         ({"F32": (None, 900.0)}, "F32 is a quantity; name a result of it: F32_peak, F32_mean, F32_rms"),
         ({"swing": 50}, "must be"),
         ({"swing": (None, None)}, "must be"),
+        ({"T12_peak": (None, "25 N m")}, "must be .low, high., numbers or one None"),
     ],
 )
 def test_constraints_that_are_none_are_refused(bounds, words):

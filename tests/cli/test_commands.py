@@ -133,8 +133,9 @@ def test_orders(table):
     assert table("orders", "press.toml", "T12", "-n", "1")["order"] == ["T12 [N m]"]
 
 
-def test_flywheel(table):
-    rows = table("flywheel", "press.toml", "--fluctuation", "0.05")
+@pytest.mark.parametrize("fluctuation", ["0.05", "5 %"])
+def test_flywheel(table, fluctuation):
+    rows = table("flywheel", "press.toml", "--fluctuation", fluctuation)
     work, wheel = ls.duty(PRESS), ls.flywheel(PRESS, fluctuation=0.05)
     assert number(rows["largest torque"][0]) == pytest.approx(float(work.effort_peak), rel=1e-4)
     assert number(rows["work fed"][0]) == pytest.approx(float(work.work_fed), rel=1e-4)
@@ -173,6 +174,7 @@ def test_each_draws_its_figure(arguments, capsys):
         (["balance", "press.toml", *RADIUS, "--fraction", "1"], "--fraction 1.0: must be left out"),
         (["orders", "press.toml", "T99"], "nothing is named 'T99'"),
         (["flywheel", "press.toml", "--fluctuation", "3"], "--fluctuation 3.0: must be less than 2"),
+        (["flywheel", "pres"], 'pres: there is no such file; did you mean "press'),
         (["flywheel", "pres.toml"], "pres.toml: there is no such file"),
         (["animate", "press.toml", "-o", "none/film.gif", "--frames", "2"], "there is no folder none"),
     ],

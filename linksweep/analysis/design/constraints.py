@@ -87,9 +87,7 @@ def checked_bounds(scene: Scene, subject_to: Any, conditions: Conditions = USUAL
     for name, ends in subject_to.items():
         pair = isinstance(ends, tuple | list) and len(ends) == 2
         sound = pair and all(end is None or as_float(end) is not None for end in ends) and tuple(ends) != (None, None)
-        problems += (
-            [] if sound else [f"subject_to.{name} = {quote(ends)}: must be (low, high), one of them may be None"]
-        )
+        problems += [] if sound else [f"subject_to.{name} = {quote(ends)}: must be (low, high), numbers or one None"]
     refuse(problems)
     return {name: (as_float(low), as_float(high)) for name, (low, high) in subject_to.items()}
 

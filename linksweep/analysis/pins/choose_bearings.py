@@ -91,8 +91,8 @@ def choose_bearings(
 
         - `equivalent_load` [N], `rotation` [degree], `F_peak` [N]; `required_capacity` and `required_static_capacity`
           [N], infinite where a load is unbounded
-        - `choice`: the bearing, "6205" and so on, of least outside diameter, of equal ones the narrowest; or "none" of
-          the catalogue is large enough
+        - `choice`: number of the bearing among its `flag_meanings`, "none" where none of the catalogue is large enough,
+          then "6000" and so on; of least outside diameter, of equal ones the narrowest
         - of the chosen one `bore`, `outside`, `width` [m], `capacity`, `static_capacity` [N], `L10h` [h] and
           `static_safety` [1]; NaN without one
 

@@ -50,7 +50,7 @@ class Load(ChangingLoad):
     Parameters
     ----------
     link : str
-        The link that it acts on: "crank", "coupler", "rocker", "rod", "slider" or "block".
+        The link that it acts on: "crank", "coupler", "rocker", "rod", "slider" or "block"; of a `Linkage` its name.
     force : pair of float, DataArray or function, default None
         (Fx, Fy) [N]; None for no force. On a slider also one number, along its guide (frame "link").
     at : pair of float or DataArray, default (0.0, 0.0)
