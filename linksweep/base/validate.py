@@ -69,7 +69,7 @@ class Rule:
 
     @property
     def named_dimensions(self) -> str:
-        """What to do with values whose dimensions have no names."""
+        """Advice for values whose dimensions have no names."""
         if self.over_angle:
             return (
                 'name its dimension: over the crank angle xarray.DataArray(values, {"theta2": degrees}, "theta2"), '
