@@ -19,6 +19,8 @@ from linksweep.scene.scene import Scene
 
 OWN_UNITS = "shown_units"
 """Attribute of a Dataset whose scene states units to show results in."""
+CYCLE = "cycle"
+"""Attribute of a variable of an engine: the crank angle after which it repeats [degree]."""
 STATUS_LONG_NAME = "what happened at this sample; values are NaN where it is not ok"
 STATUS_AT_LONG_NAME = "pin, or link past a pin, whose dyad first fails at this sample"
 

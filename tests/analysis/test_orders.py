@@ -1,5 +1,7 @@
 """Fourier orders of a cycle's signals."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -74,6 +76,19 @@ def test_loads_over_two_turns_have_half_orders_and_one_turn_is_refused(form):
     np.testing.assert_allclose(orders.T12_cos.sel(order=[0.0, 0.5, 1.0]), [6.0, -6.0, 0.0], atol=1e-12)
     with pytest.raises(ValueError, match="theta2 covers 360 degrees, but motion and loads repeat after 720: sweep"):
         ls.orders(ls.sweep(scene, np.arange(0.0, 360.0, 5.0), of=["T12"]), "T12", n=1)
+
+
+def test_half_a_cycle_of_an_engine_has_orders_of_what_no_gas_enters_alone():
+    """A four-stroke cylinder fires in one of its two turns; its shaking force is the same in both."""
+    engine = ls.example("engine")
+    gas = ls.GasPressure(0.086, ls.OttoCycle(compression_ratio=10.0, peak_pressure=60e5))
+    one = ls.MultiCylinder(replace(engine, loads=[gas]), crank_angles=[0])
+    half = one.sweep(np.arange(0.0, 360.0, 0.5), of=["T12", "Fsy"])
+    with pytest.raises(ValueError, match="theta2 covers 360 degrees, but motion and loads repeat after 720: sweep"):
+        ls.orders(half, ["Fsy", "T12"])
+    both = ls.orders(one.sweep(1440, of=["Fsy"]), "Fsy", n=4).sel(order=range(5))
+    np.testing.assert_allclose(ls.orders(half, "Fsy", n=4).Fsy_amplitude, both.Fsy_amplitude, atol=1e-8)
+    assert ls.orders(one.sweep(1440, of=["T12"]), "T12", n=2).order.values.tolist() == [0.0, 0.5, 1.0, 1.5, 2.0]
 
 
 def test_designs_keep_their_dims_and_a_broken_one_changes_no_other():

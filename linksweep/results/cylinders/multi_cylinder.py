@@ -34,10 +34,11 @@ from linksweep.results.cylinders.cylinder_sums import (
     rules_of,
     sources_of,
 )
-from linksweep.results.dataset import index_coordinate, origin_attributes
+from linksweep.results.dataset import CYCLE, index_coordinate, origin_attributes
 from linksweep.results.sweep import sweep
 from linksweep.scene.designs.lazy import in_memory
 from linksweep.scene.grid import crank_grid
+from linksweep.scene.pairs import changes
 from linksweep.scene.scene import Scene
 
 ANGLE, LENGTH = Rule("angle"), Rule("length")
@@ -225,11 +226,18 @@ class MultiCylinder(ByContent):
         ]
         sums = combined(needed, self.rules, self.throws, cycles)
         status = sums.pop("status").assign_attrs(cycles[0]["status"].attrs)
-        labels = {name: {"units": q.units, "long_name": q.long_name} for name, q in self.quantity.items()}
-        labelled = {name: values.where(status == 0).assign_attrs(labels[name]) for name, values in sums.items()}
+        labelled = {
+            name: values.where(status == 0).assign_attrs(self._attributes(name)) for name, values in sums.items()
+        }
         command = f"linksweep.MultiCylinder(...).sweep(theta2={quote(theta2)})"
         ds = xr.Dataset(labelled | {"status": status}, attrs=origin_attributes(self.engine, command))
         return ds.assign_coords(index_coordinate(self.engine, grid))
+
+    def _attributes(self, name: str) -> dict[str, Any]:
+        """Return unit, description and cycle of a quantity: loads over several turns enter some quantities alone."""
+        quantity, scene = self.quantity[name], self.engine
+        cycle = scene.period if changes(scene, sources_of((name,), self.rules)) else scene.period_of_motion
+        return {"units": quantity.units, "long_name": quantity.long_name, CYCLE: cycle}
 
 
 def _bare(cycle: xr.Dataset) -> xr.Dataset:

@@ -11,6 +11,7 @@ import xarray as xr
 from linksweep.base.validate import refuse
 from linksweep.mechanisms import MECHANISMS, Mechanism
 from linksweep.results.compute import force_in, require_dataset
+from linksweep.results.dataset import CYCLE
 from linksweep.scene.file.reading import mechanism_of, parse_scene
 from linksweep.scene.pairs import changes
 
@@ -24,10 +25,10 @@ def machine_of_results(ds: xr.Dataset) -> Mechanism | None:
 
 def cycle_of_results(ds: xr.Dataset, names: list[str]) -> float | None:
     """Return the cycle [degree] after which some results of a Dataset repeat: that of the motion where no load enters
-    them, or where arrays of loads were dropped; None where it has lost its scene."""
+    them, or where arrays of loads were dropped; None where it has lost its scene and its attributes."""
     machine = machine_of_results(ds)
     if machine is None:
-        return None
+        return max((ds[name].attrs[CYCLE] for name in names if CYCLE in ds[name].attrs), default=None)
     arrays = {str(path): ds[path].reset_coords(drop=True) for path in ds.variables}
     try:
         scene = parse_scene(ds.attrs["scene"], "ds", arrays, whole=False)
