@@ -149,9 +149,13 @@ class OttoCycle(Cycle):
 
     Notes
     -----
-    It fires at the top dead centre of the first revolution, where the crank points along the guide to the head. A crank
-    with omega2 < 0 runs through the same strokes, clockwise. The scene that takes the cycle checks its numbers, and
-    raises ValueError. Source: textbook air-standard analysis; efficiency 1 − r^(1 − γ).
+    It fires at top dead centre, in four strokes once in 720 degrees: at theta2 = ψ + δ with ψ = `slide_angle`, or with
+    branch "crossed" at ψ − δ with ψ = slide_angle + 180. ψ is counted in [0, 360), so that slide_angle=-1 fires at 359,
+    and δ = arcsin(offset/(crank + rod)) may lead to the end of the second revolution: −3 degrees are 717. Mind the
+    revolution beside other loads that take two turns.
+
+    A crank with omega2 < 0 runs through the same strokes, clockwise. The scene that takes the cycle checks its numbers,
+    and raises ValueError. Source: textbook air-standard analysis; efficiency 1 − r^(1 − γ).
 
     Examples
     --------

@@ -93,6 +93,19 @@ def test_dead_centres_are_where_the_slider_turns(branch, offset, slide_angle):
     assert abs((blow_down - bottom + 180.0) % 360.0 - 180.0) < 0.011
 
 
+@pytest.mark.parametrize(
+    ("branch", "slide_angle", "ahead"), [("open", 0, 0), ("open", -1, 359), ("crossed", 30, 210), ("crossed", -170, 10)]
+)
+@pytest.mark.parametrize("offset", [-0.03, 0.02])
+def test_it_fires_at_the_top_dead_centre_of_the_guides_angle_in_one_turn(branch, slide_angle, ahead, offset):
+    """An offset moves it on, of a crossed branch back, also below 0; a turn away, valves are open."""
+    engine = replace(ENGINE, branch=branch, offset=offset, slide_angle=slide_angle)
+    on = math.degrees(math.asin(offset / (A + B)))
+    top = ahead + (on if branch == "open" else -on)
+    just_after = OTTO.pressure(engine, [(top + 1e-6) % 720.0, (top + 360.0 + 1e-6) % 720.0]).values
+    np.testing.assert_allclose(just_after, [P3, P1], rtol=1e-6)
+
+
 # ------------------------------------------------------------------------------------ work and torque
 
 
