@@ -9,7 +9,8 @@ c·e^{iθ4} to eliminate the coupler's direction,
 
 A four-bar shakes no more where both coefficients are zero, whatever its speed: two counterweights can see to that. Of a
 slider-crank one on the crank cancels the first coefficient and, of the slider's inertia along the guide, a fraction of
-the first order, which then appears across the guide.
+the first order in phase with the crank, which then appears across the guide. With an offset some of the first order is
+a quarter turn away, and stays.
 
 Sources: R. S. Berkof and G. G. Lowen, A New Method for Completely Force Balancing Simple Linkages, Journal of
 Engineering for Industry 91 (1969) 21–26; for engines R. L. Norton, Design of Machinery, chapter "Engine Dynamics"

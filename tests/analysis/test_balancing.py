@@ -152,6 +152,22 @@ def test_a_fraction_of_the_first_order(fraction):
         np.testing.assert_allclose(after[f"{name}_amplitude"].sel(high), same, atol=1e-11 * first)
 
 
+@pytest.mark.parametrize("fraction", [0.0, 0.5, 1.0])
+def test_an_offset_adds_a_first_order_that_no_fraction_changes(fraction):
+    """Along the guide x = a cos θ + √(b² − (e − a sin θ)²); the root has a part nearly e/b·a sin θ."""
+    engine = replace(ENGINE, mechanism=replace(ENGINE.mechanism, offset=0.02, slide_angle=0.0))
+    crank, rod, slider = (getattr(engine.mechanism, name) for name in ("crank", "rod", "slider_mass"))
+    inertia = (slider + rod.mass * rod.cg_distance / rod.length) * engine.omega2**2
+    theta2 = np.radians(np.arange(1440) / 4.0)
+    root = np.sqrt(rod.length**2 - (0.02 - crank.length * np.sin(theta2)) ** 2)
+    quarter_turn_away = 2.0 * inertia * np.mean(root * np.sin(theta2))
+    balanced = ls.with_counterweights(engine, ls.counterweights(engine, radius=0.05, fraction=fraction))
+    first = ls.orders(shaking(balanced, theta2=1440), "Fsx", n=1).sel(order=1)
+    assert float(first.Fsx_cos) == pytest.approx((1.0 - fraction) * inertia * crank.length, abs=1e-9)
+    assert float(first.Fsx_sin) == pytest.approx(quarter_turn_away, rel=1e-12)
+    assert quarter_turn_away == pytest.approx(0.02 / rod.length * inertia * crank.length, rel=0.1)
+
+
 def test_a_counterweight_adds_weight_and_inertia():
     weight = ls.Counterweight("rocker", 0.3, at=(0.05, 120.0), inertia=2e-4)
     both = ls.with_counterweights(PRESS, weight).mechanism.rocker

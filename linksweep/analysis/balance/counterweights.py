@@ -141,7 +141,7 @@ def counterweights(scene: Scene, *, radius: Any, fraction: Number | None = None)
         0.06}.
     fraction : float or DataArray, default None
         Fraction of the first order that the crank's counterweight takes [1], of a machine that counterweights balance
-        in part, as a slider-crank; None is a half. 0 balances the turning masses alone, 1 moves the first order wholly
+        in part, as a slider-crank; None is a half. 0 balances the turning masses alone, 1 moves the first order
         across the guide.
 
     Returns
@@ -149,7 +149,8 @@ def counterweights(scene: Scene, *, radius: Any, fraction: Number | None = None)
     list of Counterweight
         One on the crank and, of machines with a rocker, one on the rocker. With them a four-bar and an inverted
         slider-crank shake no more, at any speed; a slider-crank shakes along the guide with 1 − fraction, across it
-        with fraction of the first order, and with all of the higher orders.
+        with fraction of the first order, and with all of the higher orders. An offset adds a first order along the
+        guide that no fraction changes: a quarter turn away, about offset/rod as large.
 
     Raises
     ------
