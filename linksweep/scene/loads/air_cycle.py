@@ -19,15 +19,16 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from linksweep.base.conversion import all_to_float64
+from linksweep.base.checked_number import checked_number
 from linksweep.base.equality import ByContent
 from linksweep.base.fields import field_problems, numbers, parameter
 from linksweep.base.frozen import bare
-from linksweep.base.validate import Number, as_float, is_lazy, quote, refuse
+from linksweep.base.validate import Number, Rule, as_float, is_lazy, quote, refuse
 from linksweep.mechanisms import Mechanism
 from linksweep.mechanisms.capabilities import lack
 from linksweep.mechanisms.cylinder import PistonCylinder
 from linksweep.scene.dimensions import dims_of
+from linksweep.scene.grid import crank_grid
 from linksweep.scene.parameters import along
 
 ATMOSPHERE = 101325.0
@@ -87,19 +88,27 @@ class Cycle(ByContent):
         ----------
         engine : Mechanism
             SliderCrank whose cylinder the cycle runs in.
-        theta2 : array_like
-            Crank angles [degree].
+        theta2 : int or array_like
+            Count of crank angles of a whole cycle, or the angles themselves [degree].
         turning : float or DataArray, default 1.0
             Sense of rotation of the crank [1]: 1 counter-clockwise, -1 clockwise.
 
         Returns
         -------
         DataArray
-            Pressure [Pa] over the design dims and theta2.
+            Pressure [Pa] over the design dims and theta2; NaN for designs whose crank does not turn fully.
+
+        Raises
+        ------
+        ValueError
+            If a number of the cycle is out of bounds, the engine has no cylinder or both branches, an angle is no
+            finite number, or `turning` is neither 1 nor -1.
         """
-        missing = lack(engine, "engine_cylinder")
-        refuse([f"engine is {missing}"] if missing else [])
-        angles = np.asarray(all_to_float64(theta2, "angle"), dtype=float)
+        refuse(self.problems("cycle") + _misfits(engine))
+        turning = checked_number("turning", turning, Rule("dimensionless"))
+        either_way = is_lazy(turning) or np.isin(turning, (1.0, -1.0)).all()
+        refuse([] if either_way else [f"turning = {quote(turning)}: must be 1 or -1, the sign of omega2"])
+        angles = crank_grid(theta2, self.period).angles
         pressure = pressure_over(self, engine.engine_cylinder, angles, turning)
         labels: dict[Any, xr.Variable] = {}
         for array in [*(number for owner in (self, engine) for _, number, _ in numbers(owner)), turning]:
@@ -155,7 +164,7 @@ class OttoCycle(Cycle):
     revolution beside other loads that take two turns.
 
     A crank with omega2 < 0 runs through the same strokes, clockwise. The scene that takes the cycle checks its numbers,
-    and raises ValueError. Source: textbook air-standard analysis; efficiency 1 − r^(1 − γ).
+    as `pressure` does, and raises ValueError. Source: textbook air-standard analysis; efficiency 1 − r^(1 − γ).
 
     Examples
     --------
@@ -216,6 +225,16 @@ class DieselCycle(Cycle):
 
 
 CYCLES = (OttoCycle, DieselCycle)
+
+
+def _misfits(engine: Mechanism) -> list[str]:
+    """Return why an engine has no cylinder for a cycle."""
+    if not isinstance(engine, Mechanism):
+        return [f"engine is a {type(engine).__name__}: must be a SliderCrank"]
+    if missing := lack(engine, "engine_cylinder"):
+        return [f"engine is {missing}"]
+    both = 'engine.branch = "both": must be "open" or "crossed"; a cylinder has one head'
+    return [both] if "branch" in engine.both_branches else []
 
 
 def pressure_over(cycle: Cycle, cylinder: PistonCylinder, angles: Any, turning: Number) -> Any:

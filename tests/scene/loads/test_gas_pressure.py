@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -323,6 +324,32 @@ def test_refusals_of_gas_pressure(changes, message):
         scene(**changes)
     assert str(refused.value).startswith(message)
     assert "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"cycle": ls.OttoCycle("10", "60 bar")}, 'cycle.compression_ratio = "10": has no unit; write 10 without'),
+        ({"engine": replace(ENGINE, branch="both")}, 'engine.branch = "both": must be "open" or "crossed"; a cylinder'),
+        ({"engine": FOUR_BAR}, "engine is a FourBar, which has no cylinder: give another machine"),
+        ({"engine": 3}, "engine is a int: must be a SliderCrank"),
+        (
+            {"theta2": [[0.0, 1.0], [2.0, 3.0]]},
+            "theta2 = [[0.0, 1.0], [2.0, 3.0]]: must be a count of angles, or a list",
+        ),
+        ({"theta2": 90.0}, "theta2 = 90.0: a count is a whole number; for one angle write [90.0]"),
+        ({"turning": -300.0}, "turning = -300.0: must be 1 or -1, the sign of omega2"),
+        ({"turning": xr.DataArray([1.0, 0.0], dims="way")}, "turning = <xarray.DataArray (way: 2)>"),
+    ],
+)
+def test_refusals_of_the_pressure_of_a_cycle(changes, message):
+    request = {"cycle": OTTO, "engine": ENGINE, "theta2": [0.0]} | changes
+    with pytest.raises(ValueError, match=f"^{re.escape(message)}"):
+        request.pop("cycle").pressure(**request)
+
+
+def test_a_count_of_angles_is_of_the_whole_cycle():
+    np.testing.assert_array_equal(OTTO.pressure(ENGINE, 4).theta2, [0.0, 180.0, 360.0, 540.0])
 
 
 FILE = Path(ls.__file__).parent / "scene" / "examples" / "engine.toml"
