@@ -5,6 +5,8 @@ Equations: `linksweep.analysis.drive.motion_in_time`.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import xarray as xr
 
@@ -107,9 +109,11 @@ def run_down(
     scene, until = in_memory(scene), one_part(until, UNTIL)
     refuse([f"until = {quote(until)}: must be less than 1"] if until >= 1.0 else [])
     start, turns, names = checked(scene, start, turns, of)
-    train = drive_train(scene, NO_MOTOR if motor is None else motor, ratio, flywheel, efficiency)
-    designs = Designs(scene, train, start)
-    speed = designs.flat(_speed(scene, start))
+    checked_scene = replace(scene, alpha2=0.0 * start)  # labels of start must be those of omega2
+    train = drive_train(checked_scene, NO_MOTOR if motor is None else motor, ratio, flywheel, efficiency)
+    omega2 = _speed(scene, start)
+    designs = Designs(scene, train, start, omega2)
+    speed = designs.flat(omega2)
     run = Run(designs.crank(powered=False), speed, until * speed, -1.0, turns, speed)
     energy = designs.kinetic_energy(np.zeros(designs.count), speed)
     results = turned(run) | {"kinetic_energy": (energy, "J", "kinetic energy at the start, of flywheel and rotor too")}

@@ -36,9 +36,11 @@ STEP = "step"
 class Designs:
     """All designs of a scene on its motor, in one row."""
 
-    def __init__(self, scene: Scene, train: DriveTrain, start: Number) -> None:
+    def __init__(self, scene: Scene, train: DriveTrain, start: Number, speed: Number = 0.0) -> None:
         self.train = train
-        self.scene = replace(train.scene, omega2=train.scene.omega2 + 0.0 * start)  # over all design dims
+        over_start = replace(train.scene, omega2=train.scene.omega2 + 0.0 * start)
+        # over all design dims; not validated: a speed from `grid` has a dim omega2, and that of another is over it here
+        self.scene = with_sound(over_start, omega2=over_start.omega2 + 0.0 * speed)
         self.sizes = self.scene.at_one_angle.inputs.sizes
         self.order = tuple(dict.fromkeys((*scene.at_one_angle.inputs.sizes, *self.sizes)))
         self.count = int(np.prod([*self.sizes.values()], dtype=int))

@@ -351,6 +351,19 @@ def test_a_batch_is_its_designs():
         np.testing.assert_allclose(part[name], alone[name], rtol=1e-9)
 
 
+def test_a_run_down_from_several_speeds_is_its_designs():
+    start, wheel = (xr.DataArray(values, dims=dim) for values, dim in (([0.0, 90.0], "at"), ([0.1, 0.2, 0.3], "wheel")))
+    several = ls.run_down(ls.grid(FOUR_BAR, {"omega2": [10.0, 20.0]}), start=start, flywheel=wheel, of=["F32"])
+    assert dict(several.duration.sizes) == {"omega2": 2, "at": 2, "wheel": 3}
+    alone = ls.run_down(replace(FOUR_BAR, omega2=20.0), start=90.0, flywheel=0.3, of=["F32"])
+    part = several.sel(omega2=20.0).isel(at=1, wheel=2)
+    for name in ("duration", "turns", "kinetic_energy", "F32_peak", "F32_peak_at"):
+        np.testing.assert_allclose(part[name], alone[name], rtol=1e-9)
+    labelled = replace(FOUR_BAR, omega2=xr.DataArray([10.0, 20.0], {"at": [1, 2]}, "at"))
+    with pytest.raises(ValueError, match="has labels along at that are not those of"):
+        ls.run_down(labelled, start=start.assign_coords(at=[2, 3]))
+
+
 @pytest.mark.parametrize(
     ("call", "message"),
     [
