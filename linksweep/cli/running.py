@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -72,13 +73,13 @@ def _without_documentation() -> None:
 
 def write_figure(figure: Figure, path: Path) -> None:
     """Write a figure to a file, whole or not at all."""
-    from linksweep.files.atomic import ending_of, whole
+    from linksweep.files.atomic import ending_of, whole, write_from_memory
 
     with whole(path) as temporary:
         if ending_of(path, PICTURES) == ".png":
             _write_png(figure, temporary)
         else:
-            figure.savefig(temporary, format=ending_of(path, PICTURES)[1:], dpi=150)
+            write_from_memory(temporary, partial(figure.savefig, format=ending_of(path, PICTURES)[1:], dpi=150))
 
 
 def _write_png(figure: Figure, path: Path) -> None:

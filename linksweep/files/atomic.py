@@ -8,11 +8,13 @@ process ends, however it ends: a process that can lock such a folder knows that 
 from __future__ import annotations
 
 import contextlib
+import io
 import os
 import shutil
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import IO, Any
 
 from linksweep.base.validate import refuse
 from linksweep.scene.file.text_file import kind_of
@@ -39,6 +41,13 @@ def whole(path: str | os.PathLike[str]) -> Iterator[Path]:
             shutil.copymode(target, temporary)
         _replace(temporary, target)
     sync_folder(target.parent)
+
+
+def write_from_memory(path: Path, write: Callable[[IO[bytes]], Any]) -> None:
+    """Write a file by way of memory: on a full disk `write`, of another package, would not raise an OSError."""
+    memory = io.BytesIO()
+    write(memory)
+    path.write_bytes(memory.getbuffer())
 
 
 def ending_of(path: str | os.PathLike[str], endings: tuple[str, ...], advice: str = "") -> str:
@@ -135,10 +144,10 @@ def _replace(temporary: Path, target: Path) -> None:
 
 @contextlib.contextmanager
 def _named(path: str | os.PathLike[str]) -> Iterator[None]:
-    """Name the target, not the temporary file, in an error of the system."""
+    """Name the target, not the temporary file, in an error of the system; the write that fails names no file."""
     try:
         yield
     except OSError as error:
-        if PREFIX not in str(error.filename):
+        if error.errno is None or not (error.filename is None or PREFIX in str(error.filename)):
             raise
         raise OSError(error.errno, error.strerror, str(path)) from None

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import errno
 import os
+import shutil
 from pathlib import Path
 from threading import RLock
 from typing import Any
@@ -30,6 +32,8 @@ TABLES = {".csv": to_csv, ".xlsx": to_excel}
 """Writers of tables, by the ending of their files."""
 NO_FILL = {"_FillValue": None}
 """Encoding of a coordinate, which by the CF conventions has no missing values."""
+ROOM = 1 << 20
+"""Bytes of a NetCDF file besides its numbers."""
 NETCDF = RLock()
 """Lock around the NetCDF library: used by two threads at once, it crashes the process."""
 
@@ -86,8 +90,23 @@ def save_dataset(ds: xr.Dataset, path: str | os.PathLike[str], manifest: dict[st
     """Write a Dataset to NetCDF whole or not at all, sealed with a manifest."""
     refuse(_unstorable(ds))
     with whole(path) as temporary, NETCDF:
-        ds.drop_encoding().to_netcdf(temporary, engine="netcdf4", encoding=dict.fromkeys(ds.coords, NO_FILL))
+        try:
+            ds.drop_encoding().to_netcdf(temporary, engine="netcdf4", encoding=dict.fromkeys(ds.coords, NO_FILL))
+        except (RuntimeError, PermissionError) as error:  # the second where there is no room at all
+            if isinstance(error, RuntimeError) and not str(error).startswith("NetCDF"):  # of what the Dataset waits for
+                raise
+            raise disk_error(temporary, ds.nbytes, error) from None
         seal(temporary, manifest or {}, SAVED)
+
+
+def disk_error(path: Path, needed: int, error: Exception) -> OSError:
+    """Return the error of the system for one of the NetCDF library, which does not tell a full disk from a broken one.
+
+    `needed` is the size of the whole file, at least.
+    """
+    if shutil.disk_usage(path.parent).free < ROOM + needed - path.stat().st_size:
+        return OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+    return error if isinstance(error, OSError) else OSError(errno.EIO, f"{os.strerror(errno.EIO)} ({error})")
 
 
 def write_text(text: str, path: str | os.PathLike[str]) -> None:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import xarray as xr
 
 from linksweep.base.validate import refuse
-from linksweep.files.atomic import ending_of, whole
+from linksweep.files.atomic import ending_of, whole, write_from_memory
 from linksweep.files.table import header_of, to_pandas
 from linksweep.results.origin.in_shown_units import in_shown_units
 
@@ -57,7 +57,7 @@ def to_excel(ds: xr.Dataset, path: str | os.PathLike[str]) -> None:
         _write(book, "columns", ("column", "unit", "meaning"), _meanings(ds))
         if isinstance(text := ds.attrs.get("scene"), str):
             _write(book, "scene", (), ([line] for line in text.splitlines()))
-        book.save(temporary)
+        write_from_memory(temporary, book.save)
 
 
 def _workbook_class() -> type[Workbook]:

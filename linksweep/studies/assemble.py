@@ -20,7 +20,7 @@ import numpy as np
 import xarray as xr
 from xarray.conventions import encode_cf_variable
 
-from linksweep.files.netcdf import NETCDF, NO_FILL
+from linksweep.files.netcdf import NETCDF, NO_FILL, ROOM, disk_error
 from linksweep.results.dataset import design_coordinates, provenance
 from linksweep.scene.designs.selection import Block
 from linksweep.scene.scene import Scene
@@ -28,7 +28,6 @@ from linksweep.scene.scene import Scene
 Chunks = Callable[[], Iterator[tuple[Block, xr.Dataset]]]
 
 TILE = 1 << 16  # numbers under one checksum: half a megabyte
-ROOM = 1 << 20  # bytes of a file besides its numbers
 
 
 @dataclass
@@ -54,15 +53,13 @@ def assemble(path: Path, scene: Scene, sizes: Mapping[str, int], chunks: Chunks,
     layout.attributes = provenance(scene, command, coordinates)
     layout.sizes |= {str(dim): n for values in coordinates.values() for dim, n in values.sizes.items()}
     numbers = (like.dtype.itemsize * prod(layout.sizes_of(name).values()) for name, like in layout.like.items())
-    needed = ROOM + sum(numbers)
-    if shutil.disk_usage(path.parent).free < needed:
+    needed = sum(numbers)
+    if shutil.disk_usage(path.parent).free < ROOM + needed:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
     try:
         _write(path, layout, coordinates, chunks)
     except RuntimeError as error:  # the NetCDF library raises no other for a disk that fails
-        full = shutil.disk_usage(path.parent).free < needed - path.stat().st_size
-        code = errno.ENOSPC if full else errno.EIO
-        raise OSError(code, f"{os.strerror(code)} ({error})") from None
+        raise disk_error(path, needed, error) from None
 
 
 def layout_of(chunks: Iterable[tuple[Block, xr.Dataset]], sizes: Mapping[str, int]) -> Layout:

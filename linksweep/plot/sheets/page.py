@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,6 +12,7 @@ from matplotlib import rc_context
 from matplotlib.figure import Figure
 
 from linksweep.base.validate import refuse
+from linksweep.files.atomic import write_from_memory
 from linksweep.plot.kit import signals
 from linksweep.plot.kit.colors import GREY, OTHER_COLORS, SKY
 from linksweep.plot.kit.style import grid, show_lengths
@@ -50,7 +52,7 @@ def write_page(figure: Figure, path: Path, kind: str) -> None:
     """Write a figure as "svg" or "pdf", byte for byte equal for equal figures."""
     metadata = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}[kind]
     with rc_context({"svg.hashsalt": "linksweep"}):
-        figure.savefig(path, format=kind, metadata=metadata)
+        write_from_memory(path, partial(figure.savefig, format=kind, metadata=metadata))
 
 
 def _curves(ax: Axes, scene: Scene, angle: float, curves: Sequence[Curve]) -> None:

@@ -56,7 +56,7 @@ def save_drawing(
     ImportError
         For DXF where ezdxf is not installed: ``pip install "linksweep[cad]"``.
     OSError
-        When the folder is missing or cannot be written.
+        When the folder is missing, cannot be written or is full.
 
     Notes
     -----
