@@ -63,8 +63,9 @@ def by_blocks(*, of_samples: bool) -> Callable[[Function[P]], Function[P]]:
     """Decorate a function of a scene: where numbers of the scene are lazy, so is the Dataset that it returns.
 
     Blocks are the chunks of the lazy parameters, each computed by one thread unless `threads` says otherwise. A lazy
-    number without dims, or one over a dim of its own name, which xarray holds in memory, is computed at once. The
-    function checks its arguments itself: it is called at once in any case, for one design where numbers are lazy.
+    number without dims, or one over a dim of its own name, which xarray holds in memory, is computed at once, and so
+    is a scene of one design, which has no blocks. The function checks its arguments itself: it is called at once in any
+    case, for one design where numbers are lazy.
 
     Parameters
     ----------
@@ -104,7 +105,9 @@ def _lazily(
     of_samples: bool,
 ) -> xr.Dataset:
     """Return the lazy result of a decorated function, `computed`, from the function itself of one design."""
-    scene = in_memory(scene, [path for path in lazy_paths(scene) if scene.arrays[path].dims in ((), (path,))])
+    one_design = not design_sizes(scene)
+    alone = [path for path in lazy_paths(scene) if one_design or scene.arrays[path].dims in ((), (path,))]
+    scene = in_memory(scene, alone)
     if not lazy_paths(scene):
         return computed(scene, *arguments, **options)
     options["threads"] = threads_of_a_task() if options.get("threads") is None else options["threads"]

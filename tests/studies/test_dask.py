@@ -197,6 +197,12 @@ def test_a_lazy_load_over_the_angle_is_chunked_along_the_designs_only():
     assert "scene" not in peaks.attrs  # lazy numbers are not stored in the Dataset
 
 
+def test_a_lazy_load_of_one_design_is_computed_at_once():
+    torque = xr.DataArray([1.0, 9.0, -4.0, 2.0], {"theta2": [0, 90, 180, 270]}, "theta2")
+    made, expected = (replace(PRESS, loads=[ls.Load("rocker", torque=each)]) for each in (torque.chunk(), torque))
+    assert ls.peaks(made, of=["T12"]).identical(ls.peaks(expected, of=["T12"]))
+
+
 # -------------------------------------------------------------------------------------------------------- errors
 
 
