@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
-from linksweep.chains.between_links import force_name, is_pin
+from linksweep.chains.between_links import force_name, is_pin, name_between
 from linksweep.chains.rows.bodies import Body, xy
 from linksweep.engine.quantity import Quantity, Row
 from linksweep.physics import bearing
@@ -61,4 +61,5 @@ def _arm_quantities(pin: str, link: int, other: int, links: Mapping[int, str]) -
     """
     vector = f"vector from the centre of gravity of link {link} ({links[link]}) to its pin {pin} with link {other}"
     axes = {"x": "along x (positive to the right)", "y": "along y (positive upwards)"}.items()
-    return [Quantity(f"R{other}{link}{axis}", "m", f"{vector} ({links[other]}), component {way}") for axis, way in axes]
+    name = name_between("R", other, link)
+    return [Quantity(f"{name}{axis}", "m", f"{vector} ({links[other]}), component {way}") for axis, way in axes]
