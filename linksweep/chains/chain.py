@@ -7,6 +7,7 @@ from dataclasses import replace
 from functools import cached_property, lru_cache
 from typing import NamedTuple
 
+from linksweep.base.validate import refuse
 from linksweep.chains.between_links import force_name, has_moment, name_between
 from linksweep.chains.coupling import JAM
 from linksweep.chains.cylinders import force_quantity
@@ -23,8 +24,8 @@ from linksweep.chains.rows.bodies import Source, xy
 from linksweep.chains.rows.load_forms import Form
 from linksweep.chains.rows.whole_machine import machine_quantities, machine_rows, power_rows
 from linksweep.chains.shape import Shape
-from linksweep.chains.topology import GROUND
-from linksweep.engine.quantity import Quantity, Row, Table, Total
+from linksweep.chains.topology import GROUND, clash_problems
+from linksweep.engine.quantity import Quantity, Row, Table, Total, made_twice, others
 from linksweep.physics.algebra import planar
 from linksweep.physics.closures import chain as chains
 from linksweep.physics.closures import crank_angle
@@ -145,9 +146,7 @@ class Chain:
         rows = [
             *self.motion.rows,
             *forces.rows,
-            Total("work", (*self.motion.work, *forces.work)),
             *self._status(forces, driven),
-            Row(planar.opposite, (own.unknown.name,), ("work",)),
             *power_rows(own.unknown.name, own.rate, self.bodies, loads, *forces.losses, *forces.powers),
             *machine_rows(self.bodies, self.joints, loads, **self.motion.certain),
             *arm_rows(self.motion),
@@ -155,8 +154,7 @@ class Chain:
             *cylinder_rows(self.topology),
             *gear_rows(self.motion),
             *(limited.rows if limited else []),
-            *own.rows,
-            *(coupling.rows(forces.rows, [*self.motion.work, *forces.work]) if coupling else []),
+            *self._work(forces, own),
             *([] if self.motion.plain else [Total("friction_power", tuple(forces.losses))]),
             *(row for beam in straight for row in beam.all_rows()),
         ]
@@ -173,12 +171,24 @@ class Chain:
             *(quantity for beam in straight for quantity in beam.quantities()),
         ]
         last = {quantity.name: quantity for quantity in quantities}
+        if self.motion.plain:
+            rows = [*others(rows, own.rows), *own.rows]
+        elif twice := made_twice(rows):
+            refuse([*clash_problems(twice, (name for row in rows for name in row.outputs), self.topology)])
         table = Table("theta2", tuple(rows), tuple(last.values()), own.between)
         if not limited:
             return table
         of_drive = (coupling or driven).limits() if driven else ()
         contacts = (*limited.of_contacts, *(coupling.contacts() if coupling else ()))
         return replace(table, limits=(*limited.of_motion, *of_drive), contacts=contacts)
+
+    def _work(self, forces: Forces, own: Own) -> Rows:
+        """Return the rows of the work on the crank, and of the drive that it needs."""
+        work = (*self.motion.work, *forces.work)
+        if forces.coupling:
+            return forces.coupling.rows(forces.rows, work)
+        of_work = [Row(planar.opposite, (own.unknown.name,), ("work",))]
+        return [Total("work", work), *(of_work if self.motion.plain else own.rows)]
 
     def _status(self, forces: Forces, drive: Drive | None) -> Rows:
         """Return rows of the status and its step: of the first dyad that does not close, else of the first jam.

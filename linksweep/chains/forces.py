@@ -94,7 +94,7 @@ class Forces:
         self.act(role)
         pivot = self.topology.ground[0]
         for axis in "xy":
-            self.row(planar.identity, (f"push_{role}_{pivot}{axis}",), f"E2{axis}")
+            self.row(planar.identity, (f"push_{role}_{pivot}{axis}",), f"acting2{axis}")
         self.push(Side(role, pivot))
 
     def _drive(self, drive: Drive) -> None:
@@ -146,13 +146,13 @@ class Forces:
             self.row(planar.identity, (friction,), 0.0)
 
     def act(self, role: str) -> None:
-        """Add up all that acts on a link: force E, and moment L about its first pin; nothing acts on a strut."""
+        """Add up all that acts on a link: force acting3, and moment L3 about its first pin; nothing acts on a strut."""
         if role in self.topology.struts:
             return
         k = self.motion.number(role)
         for axis in "xy":
             terms = (f"{force}{axis}" for force, _ in self.applied[role] if force)
-            self.rows.append(Total(f"E{k}{axis}", (f"Q{k}{axis}", *terms)))
+            self.rows.append(Total(f"acting{k}{axis}", (f"Q{k}{axis}", *terms)))
         self.rows.append(Total(f"L{k}", (f"N{k}", *(moment for _, moment in self.applied[role]))))
 
     def act_about(self, side: Side) -> None:
@@ -161,7 +161,7 @@ class Forces:
         if side.role in self.topology.struts:
             return
         k, arm = self.motion.number(side.role), self.motion.arm(side.role, side.pin)
-        self.row(planar.moment_about, (f"L{k}_{side.pin}",), f"L{k}", *arm, *xy(f"E{k}"))
+        self.row(planar.moment_about, (f"L{k}_{side.pin}",), f"L{k}", *arm, *xy(f"acting{k}"))
 
     def push(self, side: Side) -> None:
         """Apply the force of a link on a pin, push_rod_B, to the link that supports the pin."""

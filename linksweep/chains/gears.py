@@ -31,20 +31,20 @@ Geared = tuple[tuple[str, Fraction], ...]
 def geared_rows(role: str) -> tuple[str, ...]:
     """Return the names of cosine and sine of the angle of a wheel less its phase, tabulated over the crank angle for
     a ratio that is no whole number, then of their low words."""
-    return tuple(f"geared_{role}_{part}" for part in ("cos", "sin", "cos_lo", "sin_lo"))
+    return tuple(f"geared {role}_{part}" for part in ("cos", "sin", "cos_lo", "sin_lo"))
 
 
 def place_Gear(motion: Motion, step: Gear) -> None:
     """Add rows of a wheel: its angle is the crank's, times the ratio, and the phase."""
     role, k, ratio = step.link.role, motion.number(step.link.role), float(step.ratio)
-    phase: Vector = tuple(f"{role}_phase_{part}" for part in ("cos", "sin", "cos_lo", "sin_lo"))
+    phase: Vector = tuple(f"{role} phase_{part}" for part in ("cos", "sin", "cos_lo", "sin_lo"))
     turned = full(f"turned_{role}_")
     whole = step.ratio.denominator == 1
     unturned = _power(motion, role, abs(int(ratio)), ratio < 0.0) if whole else geared_rows(role)
     motion.row(pins.turned_with_low_words, turned, *unturned, *phase)
     motion.certain |= dict.fromkeys(turned, 1.0)
     motion.row(planar.along, xy(f"r{k}"), f"{role}_length", *turned[:2])
-    motion.names[role] = Names(f"_{role}")
+    motion.names[role] = Names(f" {role}")
     motion.turn(step.link, turned, ratio)
     torque = f"torque of link {k} ({role}) on link 2 ({motion.topology.crank}) by the gears, counter-clockwise"
     motion.quantities.append(Quantity(torque_name(motion.topology, role), "N m", torque))
@@ -78,11 +78,11 @@ def force_Gear(forces: Forces, step: Gear) -> None:
         d = forces.motion.place(pin)[:2]
         forces.row(gears.mesh_direction, xy(mesh), torque, *d, float(step.ratio), f"{role}_pressure_slope")
         forces.row(planar.along, xy(force), torque, *xy(mesh))
-        forces.row(planar.difference, push, *xy(f"E{k}"), *xy(force))
+        forces.row(planar.difference, push, *xy(f"acting{k}"), *xy(force))
         forces.applied[topology.crank].append((force, torque))
     else:
         for axis, out in zip("xy", push, strict=True):
-            forces.row(planar.identity, (out,), f"E{k}{axis}")
+            forces.row(planar.identity, (out,), f"acting{k}{axis}")
         forces.applied[topology.crank].append(("", torque))
     forces.push(step.link)
 

@@ -76,11 +76,10 @@ def _line_of_pins(motion: Motion, step: RPR, line: Vector) -> None:
     if step.guide not in motion.shape.inclined:
         motion.row(planar.along, xy(f"r{k}"), f"{role}_length", *line)
         return
-    first, second, *_ = motion.topology.links[role]
-    quotient = full(f"quotient{k}_{first}_{second}")
-    motion.row(pins.quotient, quotient, *motion.own(role, second), *direction_of(step.guide))
-    motion.row(pins.turned, xy(f"r{k}"), *quotient[:2], *line)
-    motion.certain |= dict.fromkeys(quotient[:2], f"{role}_length")
+    second = motion.topology.links[role][1]
+    motion.row(pins.quotient, full(f"quotient_of_line{k}"), *motion.own(role, second), *direction_of(step.guide))
+    motion.row(pins.turned, xy(f"r{k}"), *xy(f"quotient_of_line{k}"), *line)
+    motion.certain |= dict.fromkeys(xy(f"quotient_of_line{k}"), f"{role}_length")
 
 
 def _offset(motion: Motion, step: RPR) -> dict[str, Source]:

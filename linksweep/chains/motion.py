@@ -31,6 +31,10 @@ from linksweep.physics import crank_driven
 from linksweep.physics.algebra import planar
 from linksweep.physics.closures import pins
 
+RATES = frozenset(("omega3", "alpha3", "alpha4", "vCx", "vCy", "aCx", "aCy"))
+"""Rates that some closures on crank and ground make themselves, more precisely than from their ratios; in their dyad's
+own names."""
+
 
 class Motion:
     """Rows of all steps of a machine of some shape."""
@@ -225,11 +229,18 @@ class Motion:
     ) -> None:
         """Add the rows of a dyad under their names in this machine."""
         crank = {"crank_length": f"{self.topology.crank}_length"}
-        branch = {} if self.plain else {"branch_sign": f"branch_{step.name}"}
-        self.names[step.name] = names = Names("" if self.plain else f"_{step.name}", crank, branch, *listed)
+        self.names[step.name] = names = self.names_of(step, crank, *listed)
+        if rates := {names[name] for row in rows for name in row.outputs if name in RATES}:
+            self.rows = [row for row in self.rows if rates.isdisjoint(row.outputs)]
         self.rows += names.placed(rows)
         for numbers in [certain] if self.plain else [certain, certain_beyond]:
             self.certain |= {str(names[name]): names.of(unit) for name, unit in numbers.items()}
+
+    def names_of(self, step: Step, *listed: Mapping[str, Source]) -> Names:
+        """Return the names of a dyad's rows: after a space its own, which no name of a pin or a part can equal."""
+        if self.plain:
+            return Names("", *listed)
+        return Names(f" {step.name}", {"transmission_angle": f"transmission_angle_{step.name}"}, *listed)
 
     def measure(self, step: Step, words: str) -> None:
         """Add the quantity of a dyad's transmission angle."""
@@ -267,7 +278,7 @@ class Motion:
         return of_link(digit, k) | lengths | vector | self.load(digit, k, f"L{k}_{side.pin}")
 
     def load(self, digit: int, number: int, moment: str) -> dict[str, Source]:
-        return {f"Q{digit}x": f"E{number}x", f"Q{digit}y": f"E{number}y", f"N{digit}": moment}
+        return {f"Q{digit}x": f"acting{number}x", f"Q{digit}y": f"acting{number}y", f"N{digit}": moment}
 
     def on_crank_and_ground(self, step: Step) -> bool:
         """Return whether a dyad joins the crank's pin to the ground by links that are lines of pins.
@@ -327,8 +338,8 @@ class Motion:
 
     def _swapped(self, step: Step) -> dict[str, Source]:
         """Return the name of the branch's sign seen from the crank where the link on the ground is named first."""
-        self.row(planar.opposite, (f"branch_{step.name}_from_crank",), f"branch_{step.name}")
-        return {"branch_sign": f"branch_{step.name}_from_crank"}
+        self.row(planar.opposite, (f"branch_sign_from_crank {step.name}",), f"branch_sign {step.name}")
+        return {"branch_sign": f"branch_sign_from_crank {step.name}"}
 
     def _place_RRP(self, step: RRP) -> None:
         rod, X, slider, k = step.link, step.pin, step.slider, self.number(step.slider)

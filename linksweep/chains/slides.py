@@ -29,7 +29,7 @@ def place_RPP(motion: Motion, step: RPP) -> None:
         {},
         motion.on_guide(step.guide, guide),
         motion.pin("B", step.pin) | of_pin("C", centre) | of_link(4, k) | motion.load(4, k, f"L{k}"),
-        {f"slot_{part}": f"{slider}_slot_{part}" for part in ("cos", "sin", "friction")},
+        {f"slot_{part}": f"{slider} slot_{part}" for part in ("cos", "sin", "friction")},
         sliding_of("slider", slider),
         of_force("F14", f"hold_{slider}") | of_force("F42", f"push_{slider}_{step.pin}"),
     )
@@ -43,7 +43,7 @@ def force_RPP(forces: Forces, step: RPP) -> None:
     """Add rows of the forces of a slider with a slot."""
     slider, host = step.slider, forces.topology.members[step.pin][0]
     forces.act(slider)
-    in_slot = (f"{slider}_slot", rpp.SLOT_CONTACT, "ratio_in_slot")
+    in_slot = (f"{slider} slot", rpp.SLOT_CONTACT, "ratio_in_slot")
     forces.contact(step, rpp, (step.guide, rpp.CONTACT, "ratio_slider"), in_slot)
     forces.push(Side(slider, step.pin))
     forces.slide(slider, step.guide, f"hold_{slider}", step.name, rpp.CONTACT)

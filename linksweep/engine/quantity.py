@@ -5,7 +5,8 @@ from __future__ import annotations
 import inspect
 import math
 import operator
-from collections.abc import Callable, Mapping
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
@@ -96,10 +97,23 @@ class Table:
     limits: tuple[Limit, ...] | None = None
     contacts: tuple[Limit, ...] = ()
 
+    def __post_init__(self) -> None:
+        if sum(len(row.outputs) for row in self.rows) > len(self.made):
+            raise ValueError(f"two rows of the table make {', '.join(made_twice(self.rows))}")
+
+    @cached_property
+    def made(self) -> frozenset[str]:
+        """The names that rows make."""
+        return frozenset(name for row in self.rows for name in row.outputs)
+
     @cached_property
     def between_samples(self) -> Table:
         """Return the table for samples at half-angle tangents."""
-        return replace(self, rows=(*self.rows, *self.between), between=())
+        return replace(self.replacing(*self.between), between=())
+
+    def replacing(self, *rows: Row | Total) -> Table:
+        """Return the table with these rows in the place of all that make one of their names."""
+        return replace(self, rows=(*others(self.rows, rows), *rows))
 
     @cached_property
     def maker(self) -> Mapping[str, Row | Total]:
@@ -115,6 +129,18 @@ class Table:
     @cached_property
     def quantity(self) -> Mapping[str, Quantity]:
         return {quantity.name: quantity for quantity in self.quantities}
+
+
+def made_twice(rows: Iterable[Row | Total]) -> list[str]:
+    """Return the names that two rows make."""
+    count = Counter(name for row in rows for name in row.outputs)
+    return [name for name in count if count[name] > 1]
+
+
+def others(rows: Iterable[Row | Total], own: Iterable[Row | Total]) -> list[Row | Total]:
+    """Return the rows that make no name that a machine's own rows make."""
+    made = {name for row in own for name in row.outputs}
+    return [row for row in rows if made.isdisjoint(row.outputs)]
 
 
 def opposite_of(name: str) -> str:

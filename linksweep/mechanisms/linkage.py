@@ -86,7 +86,8 @@ class Linkage(Machine):
     **parts : Link, Bar, Disk, Slider or Cylinder
         Part of each name in `links`: a Link, Bar or Disk where it has two pins or more, a Slider where it slides on a
         guide, a Cylinder. A cylinder that follows the others may be left out. Each is an attribute, so that a part has
-        no name of another attribute of the class, such as drawing, nor one of results, such as power.
+        no name of another attribute of the class, such as drawing, nor one of results, such as power; no two have
+        names after which two numbers would be called, as the acceleration a_mass of "mass" and the mass of "a".
 
     Raises
     ------
@@ -268,7 +269,7 @@ class Linkage(Machine):
     @property
     def frictions(self) -> dict[str, Number]:
         guides = {f"{name}_friction": guide.friction for name, guide in self.guides.items()}
-        return guides | {f"{role}_slot_friction": self.parts[role].slot_friction for role in self.topology.yokes}
+        return guides | {f"{role} slot_friction": self.parts[role].slot_friction for role in self.topology.yokes}
 
     @property
     def teeth(self) -> dict[str, Number]:

@@ -85,13 +85,13 @@ def guide_line(name: str, angle: Number, x_guide: Number, y_guide: Number, x_hos
 
 def slot_numbers(role: str, slider: Slider) -> Numbers:
     """Return the direction of a yoke's slot from that of its guide, and its friction."""
-    return frame_parameters(f"{role}_slot", slider.slot_angle) | {f"{role}_slot_friction": slider.slot_friction}
+    return frame_parameters(f"{role} slot", slider.slot_angle) | {f"{role} slot_friction": slider.slot_friction}
 
 
 def gear_numbers(role: str, gears: Gears) -> Numbers:
     """Return the direction of a wheel where the crank's angle is 0, and the tangent of the pressure angle."""
     cos, sin = cos_sin(0.0 if gears.pressure_angle is None else gears.pressure_angle)
-    return frame_parameters(f"{role}_phase", gears.phase) | {f"{role}_pressure_slope": sin / cos}
+    return frame_parameters(f"{role} phase", gears.phase) | {f"{role}_pressure_slope": sin / cos}
 
 
 def cylinder_numbers(role: str, cylinder: Cylinder) -> Numbers:
@@ -103,4 +103,4 @@ def cylinder_numbers(role: str, cylinder: Cylinder) -> Numbers:
 def branch_sign(name: str, branch: str) -> Numbers:
     """Return the sign of a dyad's assembly: 1 for open, -1 for crossed; for both, the two over a dim of that name."""
     both = Field((f"branch_{name}",), np.array(list(BRANCH_SIGN.values())))
-    return {f"branch_{name}": BRANCH_SIGN.get(branch, both)}
+    return {f"branch_sign {name}": BRANCH_SIGN.get(branch, both)}

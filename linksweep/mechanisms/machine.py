@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
+from collections.abc import Collection
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -17,7 +18,7 @@ from linksweep.chains.rows.crank import STATUS_OF_SLIDER
 from linksweep.chains.rows.load_forms import Form
 from linksweep.chains.rows.pins import Journals, Pins
 from linksweep.chains.shape import Shape
-from linksweep.chains.topology import GROUND, Topology
+from linksweep.chains.topology import GROUND, Topology, clash_problems
 from linksweep.engine.quantity import Table
 from linksweep.mechanisms.beams.beam import beam_numbers, beam_problem, ends_of_beam
 from linksweep.mechanisms.mechanism import Mechanism
@@ -79,6 +80,9 @@ class Machine(Mechanism):
         refuse(self.chain.drive_problems(drive, self.rubbing))
         return table(self.chain, self.own(drive, loads), loads, frozenset(self.rubbing), self.beams)
 
+    def clash_problems(self, twice: Collection[str], names: Collection[str]) -> list[str]:
+        return [*clash_problems(twice, names, self.topology)]
+
     @cached_property
     def beams(self) -> tuple[str, ...]:  # type: ignore[override]
         return tuple(role for role in self.topology.links if not self.beam_problem(role))
@@ -113,7 +117,7 @@ class Machine(Mechanism):
 
     @property
     def rubbing(self) -> tuple[str, ...]:
-        """Names of the guides with friction, and of slots such as yoke_slot."""
+        """Names of the guides with friction, and of slots such as "yoke slot"."""
         return ()
 
     def directions(self) -> tuple[str, ...]:

@@ -129,6 +129,10 @@ class Mechanism(ByContent, ABC):
     def parameters(self) -> dict[str, Any]:
         """Return the numbers of the machine under the names that the physics takes; a Field where it adds a dim."""
 
+    def clash_problems(self, twice: Collection[str], names: Collection[str]) -> list[str]:
+        """Return the problem of each name that two numbers would have; `names` are those of all numbers."""
+        return [f"two numbers of the machine would be called {name}" for name in twice]
+
     @abstractmethod
     def table(self, drive: str, loads: tuple[Form, ...]) -> Table:
         """Return the table of all quantities that can be computed for this drive and loads of these forms."""

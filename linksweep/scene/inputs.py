@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import chain
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from linksweep.base.validate import refuse
 from linksweep.chains.rows.crank import OverDesigns
+from linksweep.chains.topology.problems import repeated
 from linksweep.engine.run import Field
 from linksweep.engine.trace.plan import InputForms
 from linksweep.scene.dimensions import side_by_side
@@ -28,6 +31,8 @@ class Inputs(NamedTuple):
 def engine_inputs(scene: Scene) -> Inputs:
     """Return the inputs of a scene whose parameters have been evaluated at the angles of a grid."""
     fields = {name: as_field(value) for name, value in _named_values(scene).items()}
+    if twice := scene.table.made.intersection(fields):
+        refuse(scene.mechanism.clash_problems(twice, (*scene.table.made, *fields)))
     grid_rows = tuple((name, (scene.mechanism.index,)) for name in rows(scene.mechanism.geared))
     forms = (*((name, form_of(field)) for name, field in fields.items()), *grid_rows)
     arrays = (field for field in fields.values() if field.dims)
@@ -38,12 +43,18 @@ def engine_inputs(scene: Scene) -> Inputs:
 
 def _named_values(scene: Scene) -> dict[str, Any]:
     """Return the numbers of motion, machine and loads under the names that the physics takes."""
-    values = scene.motion | scene.mechanism.parameters()
-    if "section" in scene.motion:
-        values |= scene.mechanism.beam_numbers()
-    values |= over_designs(scene.mechanism.driven_numbers(scene.motion))
-    for k, load in enumerate(scene.loads, 1):
-        values |= load.parameters(f"load{k}", values)
+    machine, beams = scene.mechanism.parameters(), "section" in scene.motion
+    numbers = [
+        scene.motion,
+        machine,
+        scene.mechanism.beam_numbers() if beams else {},
+        over_designs(scene.mechanism.driven_numbers(scene.motion)),
+        *(load.parameters(f"load{k}", machine) for k, load in enumerate(scene.loads, 1)),
+    ]
+    names = [*chain.from_iterable(numbers)]
+    values = dict(chain.from_iterable(of_part.items() for of_part in numbers))
+    if len(values) < len(names):
+        refuse(scene.mechanism.clash_problems(repeated(names), names))
     return values
 
 

@@ -59,7 +59,7 @@ class Beam:
         for n, name in enumerate(FORCES):
             self.rows.append(Total(f"{name}{k}", tuple(term[n] for term in terms)))
         stresses = tuple(name.format(k) for name in STRESSES)
-        inputs = (f"axial_force{k}", f"bending_moment{k}", f"{role}_area", f"{role}_modulus")
+        inputs = (f"axial_force{k}", f"bending_moment{k}", f"{role} area", f"{role} modulus")
         return [*self.rows, Row(beam.fibre_stresses, stresses, inputs)]
 
     def quantities(self) -> list[Quantity]:
@@ -103,12 +103,12 @@ class Beam:
             self.rows.append(Row(beam.in_shank, (near,), (self.x, self.length)))
         weight = (*xy("gravity_"), *self.body.pin_acceleration, *self.body.axes)
         self.rows.append(Row(beam.body_force, self._motion[1:3], weight))  # type: ignore[arg-type]
-        mass = (f"{role}_shank_mass", f"{role}_shank_spin")
+        mass = (f"{role} shank_mass", f"{role} shank_spin")
         return self._term(beam.shank_beyond, self.x, near, self.length, *mass, *self._motion)
 
     def _eye(self) -> tuple[str, ...]:
         role = self.body.role
-        mass = (f"{role}_eye_mass", f"{role}_eye_moment", f"{role}_eye_inertia")
+        mass = (f"{role} eye_mass", f"{role} eye_moment", f"{role} eye_inertia")
         return self._term(beam.eye_beyond, self.x, self.length, *mass, *self._motion)
 
     def _points(self) -> Iterator[Point]:

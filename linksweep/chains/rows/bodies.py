@@ -70,7 +70,7 @@ class Body:
         cg, gravity, rates = xy(f"{role}_cg_"), xy("gravity_"), (f"omega{k}", f"alpha{k}")
         mass, length, vector = f"{role}_mass", f"{role}_length", xy(f"r{k}")
         moment_of_inertia = Row(inertia.moment_of_inertia_about_pin, (f"J{k}",), (mass, f"{role}_inertia", *cg))
-        force, moment, load = xy(f"Q{k}"), (f"N{k}",), xy(f"P{k}")
+        force, moment, load = xy(f"Q{k}"), (f"N{k}",), xy(f"applied{k}")
         if self.steady:
             body = (mass, *cg, length, *vector, *gravity)
             return [
@@ -86,7 +86,12 @@ class Body:
         ]
 
     def _centre(self) -> list[Row | Total]:
-        k, role, gravity, load = self.number, self.role, xy("gravity_"), (*xy(f"P{self.number}"), f"M{self.number}")
+        k, role, gravity, load = (
+            self.number,
+            self.role,
+            xy("gravity_"),
+            (*xy(f"applied{self.number}"), f"M{self.number}"),
+        )
         centre, velocity, acceleration = xy(f"rG{k}"), xy(f"vG{k}"), xy(f"aG{k}")
         rates, (mass, inertia_about_cg) = (f"omega{k}", f"alpha{k}"), (f"{role}_mass", f"{role}_inertia")
         moving = (mass, inertia_about_cg, *velocity, *acceleration, *rates)
@@ -103,11 +108,11 @@ class Body:
         ]
 
     def _shaking(self) -> list[Row | Total]:
-        k, role, force, centre = self.number, self.role, xy(f"S{self.number}"), xy(f"G{self.number}")
+        k, role, force, centre = self.number, self.role, xy(f"shaking{self.number}"), xy(f"G{self.number}")
         return [
             Row(planar.vector_sum, centre, (*self.pin_position, *xy(f"rG{k}"))),
             Row(shaking.inertia_force, force, (f"{role}_mass", *xy(f"aG{k}"))),
-            Row(shaking.inertia_moment, (f"S{k}m",), (f"{role}_inertia", f"alpha{k}", *centre, *force)),
+            Row(shaking.inertia_moment, (f"shaking{k}m",), (f"{role}_inertia", f"alpha{k}", *centre, *force)),
         ]
 
     def _reduced(self) -> list[Row | Total]:

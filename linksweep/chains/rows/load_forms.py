@@ -67,13 +67,13 @@ class Form:
 
 
 def action_rows(forms: tuple[Form, ...], bodies: Iterable[Body]) -> list[Row | Total]:
-    """Return the rows of all loads, and for each body k their resultant Pk and moment Mk about its first pin."""
+    """Return the rows of all loads, and for each body k their resultant and moment Mk about its first pin."""
     by_role = {body.role: body for body in bodies}
     rows = [row for name, form in named(forms) for row in form.rows(name, by_role)]
     for role, body in by_role.items():
         acting = [form.on(name, role) for name, form in named(forms)]
         stems, k = [stem for act in acting for stem in act.forces], body.number
-        rows += [Total(f"P{k}{axis}", tuple(f"{stem}{axis}" for stem in stems)) for axis in "xy"]
+        rows += [Total(f"applied{k}{axis}", tuple(f"{stem}{axis}" for stem in stems)) for axis in "xy"]
         rows.append(Total(f"M{k}", tuple(moment for act in acting for moment in act.moments)))
     return rows
 

@@ -47,7 +47,7 @@ def machine_quantities(bodies: Bodies, joints: Pins, links: Mapping[int, str], l
 
 def _sums(bodies: Bodies, loads: Loads) -> list[Row | Total]:
     """Return rows of all moving links together: shaking, reduced inertia, powers, and power that the drive feeds."""
-    sums = {"Fsx": "S{}x", "Fsy": "S{}y", "Ms": "S{}m", "inertia_power": "inertia_power{}"}
+    sums = {"Fsx": "shaking{}x", "Fsy": "shaking{}y", "Ms": "shaking{}m", "inertia_power": "inertia_power{}"}
     sums |= {"gravity_power": "gravity_power{}", "reduced_inertia": "reduced_inertia{}"}
     sums |= {"reduced_inertia_slope": "reduced_inertia_slope{}"}
     return [

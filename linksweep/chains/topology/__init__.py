@@ -11,6 +11,7 @@ from functools import lru_cache
 
 from linksweep.chains.topology.dyads import PRP, RPP, RPR, RRP, RRR, Gear, Side, Step
 from linksweep.chains.topology.problems import (
+    clash_problems,
     closure_problems,
     crank_problems,
     gear_problems,
@@ -35,6 +36,7 @@ __all__ = [
     "Side",
     "Step",
     "Topology",
+    "clash_problems",
     "taken",
     "topology",
     "topology_of",

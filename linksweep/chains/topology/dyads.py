@@ -43,7 +43,7 @@ class Step:
 
     @property
     def slides(self) -> tuple[str, ...]:
-        """Names of the slides: guides, and slots such as yoke_slot."""
+        """Names of the slides: guides, and slots such as "yoke slot"."""
         return tuple(guide for word, guide in vars(self).items() if word.endswith("guide"))
 
 
@@ -103,7 +103,7 @@ class RPP(Step):
 
     @property
     def slides(self) -> tuple[str, ...]:
-        return (self.guide, f"{self.slider}_slot")
+        return (self.guide, f"{self.slider} slot")
 
 
 @dataclass(frozen=True)

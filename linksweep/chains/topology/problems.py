@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from fractions import Fraction
-from itertools import combinations
+from itertools import combinations, count
 from keyword import iskeyword
 
 from linksweep.base.validate import closest, did_you_mean
@@ -42,8 +42,20 @@ def name_problems(parts: list[Part], reserved: Collection[str]) -> Iterator[str]
     named = (name for part in parts for name in (part.role, part.guide) if not QUANTITY.fullmatch(name))
     for name in (name for name in named if re.fullmatch(PIN, name)):
         yield f'links: "{name}" reads as a pin: give parts and guides names in lower case, such as rod or slide'
-    for pin in sorted({pin for part in parts for pin in part.pins if re.fullmatch("[FGRT][0-9]+", pin)}):
+    pins = {pin for part in parts for pin in (*part.pins, *part.ends)}
+    for pin in sorted(pin for pin in pins if re.fullmatch("[FGQRT][0-9]+", pin)):
         yield f"links: pin {pin} has the name of a quantity: name it by a letter, or by one such as P and a number"
+
+
+def clash_problems(twice: Iterable[str], names: Iterable[str], topology: Topology) -> Iterator[str]:
+    """Yield the problem of each name that two numbers of a machine would have; `names` are those of all its numbers."""
+    every, parts = " ".join(names), (*topology.names, *topology.hosts)
+    for name in twice:
+        after = [part for part in dict.fromkeys(parts) if re.search(rf"(?<![^\W_]){part}(?![^\W_])", name)]
+        longest = max(after, key=len, default="part")
+        free = next(other for other in (f"{longest}_{n}" for n in count(1)) if other not in every)
+        quoted = " and ".join(f'"{part}"' for part in after) or "a part"
+        yield f"links: two numbers would be called {name}, after {quoted}: rename {longest}, for example to {free}"
 
 
 def part_problems(parts: list[Part]) -> Iterator[str]:

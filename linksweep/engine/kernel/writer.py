@@ -279,7 +279,8 @@ class Writer:
             return repr(node.value) if math.isfinite(node.value) else f"math.{node.value}"
         passes = self.stage - self.stages.get(node, 0) if self.stages and self.per_sample(node) else 0
         age = f"_{passes}" if passes else ""
-        return f"{node.value if node.operator == 'input' else f'x{node.position}'}{age}"
+        own = node.operator == "input" and node.value.isidentifier()
+        return f"{node.value if own else f'x{node.position}'}{age}"
 
     def _expression(self, node: Node) -> str:
         """Return an operation as Python source."""

@@ -37,7 +37,7 @@ def beam_numbers(role: str, link: Link | Bar) -> dict[str, Number]:
     numbers = dict(zip(("shank_mass", "eye_mass", "eye_moment", "eye_inertia"), masses, strict=True))
     section: Any = link.section  # a beam has one
     numbers |= {"shank_spin": spin, "area": section.area, "modulus": section.modulus}
-    return {f"{role}_{name}": number for name, number in numbers.items()}
+    return {f"{role} {name}": number for name, number in numbers.items()}
 
 
 def ends_of_beam(role: str, length: Number, thirds: list[Number]) -> dict[str, Number]:

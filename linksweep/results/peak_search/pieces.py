@@ -9,7 +9,6 @@ piece. Designs are searched side by side, piece by piece, each piece as a turn t
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -356,7 +355,7 @@ def _table_on_pieces(table: Table, directions: tuple[str, ...], changing: tuple[
         *(Row(planar.identity, (name,), (own,)) for name, own in known.items()),
         *changing,
     )
-    return replace(between, rows=(*between.rows, *rows))
+    return between.replacing(*rows)
 
 
 def _over_angle(scene: Scene) -> Polynomials | None:

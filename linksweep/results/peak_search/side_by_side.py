@@ -7,7 +7,6 @@ until no other such place is found. Few designs that turn fully are searched mor
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -173,7 +172,7 @@ def _table(table: Table, limits: tuple[Limit, ...]) -> Table:
             rows.append(Row(planar.opposite, (f"opposite of {name}",), (name,)))
             rows.append(Row(upper_bound, (f"upper bound of {name}",), (name, noise)))
     between = table.between_samples
-    return replace(between, rows=(*between.rows, *rows))
+    return between.replacing(*rows)
 
 
 def upper_bound(signal: Number, noise: Number) -> Number:

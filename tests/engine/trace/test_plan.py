@@ -12,6 +12,7 @@ from linksweep.engine.trace.derivatives import derivative_of
 from linksweep.engine.trace.plan import Plan, plan
 from linksweep.physics.algebra import planar
 from linksweep.scene.derivatives.differentiated import differentiated
+from linksweep.scene.inputs import engine_inputs
 from linksweep.scene.parameters import free
 
 KINEMATICS = ("theta3", "theta4", "omega3", "omega4", "alpha3", "alpha4")
@@ -226,3 +227,20 @@ def test_a_table_that_makes_a_name_of_itself_is_refused():
     circle = (Row(planar.opposite, ("a",), ("b",)), Row(planar.opposite, ("b",), ("a",)))
     with pytest.raises(ValueError, match="makes a of itself"):
         plan(Table("theta2", circle), ("a",), ())
+
+
+def test_a_table_with_two_rows_that_make_one_name_is_refused():
+    """Rows that take the place of others do so by name; of those whose name they make nothing is left."""
+    rows = (Row(planar.opposite, ("a",), ("b",)), Row(planar.identity, ("c",), ("a",)))
+    again = Row(planar.identity, ("a", "d"), ("b",))
+    with pytest.raises(ValueError, match=r"two rows of the table make a$"):
+        Table("theta2", (*rows, again))
+    assert Table("theta2", rows).replacing(again).rows == (rows[1], again)
+
+
+def test_an_input_that_a_row_makes_is_refused():
+    press = scene()
+    made = replace(press.table, rows=(*press.table.rows, Row(planar.opposite, ("crank_mass",), ("coupler_mass",))))
+    vars(press)["table"] = made
+    with pytest.raises(ValueError, match="two numbers would be called crank_mass"):
+        engine_inputs(press)

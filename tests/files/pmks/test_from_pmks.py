@@ -191,3 +191,14 @@ def test_a_cylinder_that_drives_has_its_speed_where_it_is_drawn():
     towards = (c - 0.03) / abs(c - 0.03)
     weight = 0.001 * 9.80665 * 0.01  # 1 g, 2 cm from O at 60 degrees
     assert float(cycle.force_gn[0]) == pytest.approx(weight / (c.conjugate() * towards).imag, rel=1e-12)
+
+
+def test_joints_of_two_letters_have_names_that_change_no_number():
+    """They become P1, P2, …: names of the loads on links, and of all that acts on them, in tables of old."""
+    drawn, body = read(DOCUMENTS["Rocker with an offset load"]), body_of("Rocker with an offset load")
+    renamed = body.replace("0C,C,", "0AA,AA,").replace("0L,L,", "0AB,AB,")
+    renamed = renamed.replace("B,C,,", "B,AA,,").replace("C,D,L,,", "AA,D,AB,,")
+    scene, names = read(stamped(renamed)), ["T12", "F12", "F32", "F43", "F14", "Fs"]
+    assert scene.mechanism.links == drawn.mechanism.links.replace("B-C", "B-P1").replace("D-C-L", "D-P1-P2")
+    two, one = (ls.sweep(machine, [40.0, 80.0], of=names) for machine in (scene, drawn))
+    assert two.equals(one) and np.isfinite(one.T12).all()

@@ -207,7 +207,7 @@ def test_a_four_bar_has_the_numbers_of_a_four_bar():
     }
     frame = {name: linkage[f"D_{name}"] for name in ("cos", "sin", "cos_lo", "sin_lo")}
     assert frame == {name: four_bar[f"ground_{name}"] for name in frame}
-    assert linkage["D_distance"] == four_bar["ground_length"] == linkage["Dx"] and linkage["branch_C"] == 1.0
+    assert linkage["D_distance"] == four_bar["ground_length"] == linkage["Dx"] and linkage["branch_sign C"] == 1.0
     assert not any(linkage[f"D{name}"] for name in ("x_lo", "y", "y_lo", "_distance_lo"))
 
 
@@ -265,13 +265,13 @@ def test_a_guide_on_a_link_is_measured_from_its_first_pin():
     guide = ls.Guide(of="arm", through=(0, 0.01), friction=0.1)
     numbers = ls.Linkage(links, guides={"arm": guide}, **place).parameters()
     assert (numbers["arm_offset"], numbers["arm_start"], numbers["arm_friction"]) == (0.01, 0.0, 0.1)
-    assert numbers["branch_arm"] == 1.0
+    assert numbers["branch_sign arm"] == 1.0
 
 
 def test_branches_have_signs_and_dims():
-    assert press().parameters()["branch_F"] == -1.0
+    assert press().parameters()["branch_sign F"] == -1.0
     both = press(branch={"F": "both"})
-    field = both.parameters()["branch_F"]
+    field = both.parameters()["branch_sign F"]
     assert field.dims == ("branch_F",) and field.values.tolist() == [1.0, -1.0]
     assert both.coordinates() == {"branch_F": ["open", "crossed"]} and press().coordinates() == {}
 
@@ -280,9 +280,9 @@ def test_slots_and_phases_have_directions():
     parts = {"crank": PARTS["crank"], "yoke": ls.Slider(1.0, slot_angle=60.0)}
     links, guides = "crank A-B, yoke on slide past B", {"slide": ls.Guide()}
     numbers = ls.Linkage(links, ground={"A": (0, 0)}, guides=guides, **parts).parameters()
-    assert numbers["yoke_slot_cos"] == 0.5 and near(exact(numbers, "yoke_slot_sin"), mp.sqrt(3) / 2)
+    assert numbers["yoke slot_cos"] == 0.5 and near(exact(numbers, "yoke slot_sin"), mp.sqrt(3) / 2)
     phase = geared(ls.Gears(phase=30.0)).parameters()
-    assert near(exact(phase, "wheel_phase_cos"), mp.sqrt(3) / 2) and phase["wheel_phase_sin"] == 0.5
+    assert near(exact(phase, "wheel phase_cos"), mp.sqrt(3) / 2) and phase["wheel phase_sin"] == 0.5
 
 
 def test_arrays_broadcast_by_name():

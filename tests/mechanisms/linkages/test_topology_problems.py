@@ -118,6 +118,10 @@ TAKEN = "has a meaning of its own in linksweep or Python: give the part another 
             "links: pin F12 has the name of a quantity: name it by a letter, or by one such as P and a number",
         ),
         (
+            f"{FOUR_BAR}, c1 Q2~C",
+            "links: pin Q2 has the name of a quantity: name it by a letter, or by one such as P and a number",
+        ),
+        (
             "block C on slide, crank A-B, rod B-C",
             "links: block stands first: begin with the crank, a link such as crank A-B",
         ),
