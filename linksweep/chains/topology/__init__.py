@@ -16,6 +16,7 @@ from linksweep.chains.topology.problems import (
     crank_problems,
     gear_problems,
     guide_problems,
+    joint_problems,
     mobility_problems,
     name_problems,
     part_problems,
@@ -81,6 +82,7 @@ def topology(
     from_crank = crank_problems(parts[0], ground)
     if not from_crank and not of_pins:  # else links are held in another way than is meant
         from_crank = [*mobility_problems(machine), *([] if of_joints else closure_problems(machine))]
+        from_crank += [] if of_joints or from_crank else joint_problems(machine)
     return machine, (*problems, *from_crank)
 
 

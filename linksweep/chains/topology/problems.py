@@ -7,6 +7,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from fractions import Fraction
 from itertools import combinations, count
 from keyword import iskeyword
+from typing import TypeVar
 
 from linksweep.base.validate import closest, did_you_mean
 from linksweep.chains.topology.text import PIN, RATIO, Part
@@ -20,9 +21,10 @@ RESERVED = {
 
 QUANTITY = re.compile(r"(theta|omega|alpha|F|T|R|aG|ratio|slope)[0-9].*")
 """Names of quantities that number the links, such as theta2."""
+Name = TypeVar("Name", str, tuple[int, int])
 
 
-def repeated(names: Iterable[str]) -> list[str]:
+def repeated(names: Iterable[Name]) -> list[Name]:
     """Return the names that stand more than once, each once."""
     names = list(names)
     return [name for name in dict.fromkeys(names) if names.count(name) > 1]
@@ -153,6 +155,15 @@ def mobility_problems(topology: Topology) -> list[str]:
         return [f"links: {freedoms} degrees of freedom: {more}"]
     degrees = "no degree of freedom" if freedoms == 0 else f"{1 - freedoms} constraints too many"
     return [f"links: {degrees}: nothing can move; one link less, or one pin less on a link"]
+
+
+def joint_problems(topology: Topology) -> Iterator[str]:
+    """Yield the problem of each two links that two joints hold, whose forces would have one name."""
+    joints, roles = {**topology.pins, **topology.slides}, (GROUND, *topology.roles)
+    for pair in repeated(joints.values()):
+        one, other = (roles[number - 1] for number in sorted(pair))
+        places = ", ".join(joint for joint, links in joints.items() if links == pair)
+        yield f"links: {one} and {other} are joined twice ({places}), and stand still on each other: leave one out"
 
 
 def closure_problems(topology: Topology) -> list[str]:

@@ -239,3 +239,24 @@ def test_a_wrong_mobility_is_stated_beside_an_undeclared_guide():
 
 def test_names_may_have_capitals():
     assert problems("Crank A-B, ROD B-C, ram C on SLIDE", "A", (("SLIDE", GROUND),)) == []
+
+
+@pytest.mark.parametrize(
+    ("links", "hosts", "line"),
+    [
+        (
+            "arm D-E past A",
+            (),
+            "links: ground and arm are joined twice (D:arm, arm past A), and stand still on each other",
+        ),
+        (
+            "yoke on slide past D",
+            SLIDE,
+            "links: ground and yoke are joined twice (slide, yoke past D), and stand still",
+        ),
+    ],
+)
+def test_two_joints_between_the_same_links(links, hosts, line):
+    """Their forces would have one name, such as F13x."""
+    (only,) = problems(f"crank A-B, {links}, rod B-C, lever D-C", "AD", hosts)
+    assert only.startswith(line) and only.endswith(": leave one out")
