@@ -132,6 +132,7 @@ class Linkage(Machine):
 
     def __init__(
         self,
+        /,
         links: str,
         *,
         ground: Mapping[str, Any],

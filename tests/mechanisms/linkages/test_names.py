@@ -116,3 +116,9 @@ def test_numbers_of_loads_and_parts_of_one_name_are_refused():
     scene = yoke_and_ram(*renamed(SLIDING, wheel="load1_free"))
     with pytest.raises(ValueError, match='two numbers would be called load1_free_length, after "load1_free"'):
         ls.sweep(ls.Scene(scene.mechanism, omega2=20.0, loads=[spring]), AT)
+
+
+def test_a_part_called_self_is_refused_in_words():
+    parts = {"crank": link(0.1), "self": link(0.4), "rocker": link(0.3)}
+    with pytest.raises(ValueError, match='links: "self" has a meaning of its own'):
+        ls.Linkage("crank A-B, self B-C, rocker D-C", ground={"A": (0, 0), "D": (0.4, 0)}, **parts)
