@@ -11,6 +11,7 @@ from collections.abc import Callable, Mapping
 from linksweep.chains import cylinders, gears, lines, slides
 from linksweep.chains.dyads import rrp, rrr
 from linksweep.chains.dyads.names import (
+    RATES,
     Names,
     Vector,
     direction_of,
@@ -30,10 +31,6 @@ from linksweep.engine.quantity import Quantity, Row
 from linksweep.physics import crank_driven
 from linksweep.physics.algebra import planar
 from linksweep.physics.closures import pins
-
-RATES = frozenset(("omega3", "alpha3", "alpha4", "vCx", "vCy", "aCx", "aCy"))
-"""Rates that some closures on crank and ground make themselves, more precisely than from their ratios; in their dyad's
-own names."""
 
 
 class Motion:

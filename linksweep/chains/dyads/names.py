@@ -15,6 +15,8 @@ OF_THE_CRANK = {
 """Names that mean the same in every dyad."""
 PIN = ("{}x", "{}y", "{}x_lo", "{}y_lo", "u{}x", "u{}y", "u{}x_slope", "u{}y_slope", "v{}x", "v{}y", "a{}x", "a{}y")
 LINK = ("r{}x", "r{}y", "r{}x_lo", "r{}y_lo", "ratio{}", "slope{}", "omega{}", "alpha{}", "theta{}")
+RATES = frozenset(("omega3", "alpha3", "alpha4", "vCx", "vCy", "aCx", "aCy"))
+"""Rates that some closures on crank and ground make themselves, more precisely than from their ratios."""
 Vector = tuple[Source, ...]
 NOTHING: dict[str, Source] = {"Q3x": 0.0, "Q3y": 0.0, "N3": 0.0}
 """Loads on a block without mass."""
