@@ -85,8 +85,8 @@ def sizes(designs: Designs, A: Array, b: Array) -> tuple[Array, Array]:
         mass, inertia = designs.numbers[f"{role}_mass"], designs.numbers[f"{role}_inertia"]
         for j, axis in enumerate("xy"):
             pull = np.abs(terms[f"aG{k}{axis}"]) + np.abs(designs.numbers[f"gravity_{axis}"])
-            right_side[:, row + j] = mass * pull + np.abs(terms[f"P{k}{axis}"])
-        turning = np.abs(terms[f"rG{k}x"] * terms[f"P{k}y"]) + np.abs(terms[f"rG{k}y"] * terms[f"P{k}x"])
+            right_side[:, row + j] = mass * pull + np.abs(terms[f"applied{k}{axis}"])
+        turning = np.abs(terms[f"rG{k}x"] * terms[f"applied{k}y"]) + np.abs(terms[f"rG{k}y"] * terms[f"applied{k}x"])
         right_side[:, row + 2] = inertia * np.abs(terms[f"alpha{k}"]) + np.abs(terms[f"M{k}"]) + turning
     if designs.machine == "slider-crank":
         _slider(designs, terms, matrix, right_side)
@@ -98,14 +98,14 @@ def _slider(designs: Designs, terms: dict[str, Array], matrix: Array, right_side
     x = designs.numbers
     for j, axis in enumerate("xy"):
         pull = np.abs(terms[f"aG4{axis}"]) + np.abs(x[f"gravity_{axis}"])
-        right_side[:, 6 + j] = x["slider_mass"] * pull + np.abs(terms[f"P4{axis}"])
+        right_side[:, 6 + j] = x["slider_mass"] * pull + np.abs(terms[f"applied4{axis}"])
     cos, sin = (np.abs(turn(np.radians(x["slide_angle"]))) for turn in (np.cos, np.sin))
     matrix[:, 8, 6], matrix[:, 8, 7] = cos + x["friction"] * sin, sin + x["friction"] * cos
 
 
 def _made_of(designs: Designs) -> dict[str, Array]:
     """Return intermediate numbers of the 9×9, by their names in the plan."""
-    stems = ("rG{}x", "rG{}y", "aG{}x", "aG{}y", "P{}x", "P{}y", "M{}", "alpha{}")
+    stems = ("rG{}x", "rG{}y", "aG{}x", "aG{}y", "applied{}x", "applied{}y", "M{}", "alpha{}")
     names = tuple(stem.format(k) for stem in stems for k in (2, 3, 4))
     scene = designs.scene()
     grid = crank_grid([designs.theta2], scene.period)

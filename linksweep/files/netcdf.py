@@ -198,7 +198,8 @@ def scene_of(ds: xr.Dataset, name: str = "Dataset", whole: bool = True) -> Scene
     text = ds.attrs.get("scene")
     if not isinstance(text, str):
         raise ValueError(
-            f"{name}: holds no scene; only Datasets made by linksweep do, and only while they keep their attributes"
+            f"{name}: holds no scene; only Datasets made by linksweep do, and only while they keep their attributes; "
+            "those of a MultiCylinder hold none"
         )
     arrays = {str(path): ds[path].reset_coords(drop=True) for path in ds.variables}
     scene = parse_scene(text, name, arrays, whole)

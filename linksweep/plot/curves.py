@@ -173,7 +173,8 @@ def force_names(ds: xr.Dataset, names: Iterable[str] | None) -> list[str]:
     forces = drawing_of_results(ds).forces
     chosen = [name for name in forces if signals.has_pin(ds, name)]
     if not chosen:
-        raise ValueError(f"the Dataset has no pin force: sweep with of=[..., {', '.join(map(repr, forces))}]")
+        known = f"[..., {', '.join(map(repr, forces))}]"
+        raise ValueError(f"the Dataset has no pin force: sweep with of={known}; of a MultiCylinder, sweep its engine")
     return chosen
 
 

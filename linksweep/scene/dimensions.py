@@ -21,7 +21,7 @@ UNNAMED = re.compile(r"dim_\d+")
 """Names that xarray gives."""
 RESULTS = (
     "status", "arc", "toggle", "spline", "equation", "unknown", SECTION, "pin", "main", "cylinder", "frame", "source",
-    "balance", "order", "parameter", "limit", "link", "plane", "criterion", "load_class", "step", "candidate",
+    "balance", "order", "parameter", "limit", "link", "plane", "criterion", "load_class", "step",
 )  # fmt: skip
 """Names of variables and dims in results besides the quantities."""
 

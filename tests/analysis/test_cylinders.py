@@ -135,3 +135,11 @@ def test_designs_are_batched():
 def test_refusals(call, message):
     line = refusal(call)[0]
     assert message in line
+
+
+def test_what_needs_a_scene_states_that_several_cylinders_have_none():
+    cycle = ls.MultiCylinder(ENGINE, [0, 360]).sweep(8)
+    with pytest.raises(ValueError, match=r"'F14'\]; of a MultiCylinder, sweep its engine$"):
+        cycle.linksweep.forces()
+    with pytest.raises(ValueError, match=r"keep their attributes; those of a MultiCylinder hold none$"):
+        cycle.linksweep.mechanism()

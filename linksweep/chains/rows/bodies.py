@@ -86,12 +86,8 @@ class Body:
         ]
 
     def _centre(self) -> list[Row | Total]:
-        k, role, gravity, load = (
-            self.number,
-            self.role,
-            xy("gravity_"),
-            (*xy(f"applied{self.number}"), f"M{self.number}"),
-        )
+        k, role = self.number, self.role
+        gravity, load = xy("gravity_"), (*xy(f"applied{k}"), f"M{k}")
         centre, velocity, acceleration = xy(f"rG{k}"), xy(f"vG{k}"), xy(f"aG{k}")
         rates, (mass, inertia_about_cg) = (f"omega{k}", f"alpha{k}"), (f"{role}_mass", f"{role}_inertia")
         moving = (mass, inertia_about_cg, *velocity, *acceleration, *rates)

@@ -186,7 +186,7 @@ def test_peaks_of_many_offsets_are_those_of_each():
 
 def test_peaks_that_do_not_depend_on_the_frame_lie_at_angles_that_do():
     """The slide is longest where the crank points away from D, whichever way the frame lies."""
-    frame = xr.DataArray([0.0, 23.0, -90.0], dims="frame")
+    frame = xr.DataArray([0.0, 23.0, -90.0], dims="turned")
     peaks = ls.peaks(ls.Scene(machine(friction=0.0, ground_angle=frame), omega2=3.0), of=["slide"])
     np.testing.assert_allclose(peaks.slide_max, np.sqrt(0.48**2 - 0.04**2), rtol=1e-14)
     np.testing.assert_allclose(peaks.slide_max_at, [180.0, 203.0, 90.0], rtol=0, atol=1e-9)
