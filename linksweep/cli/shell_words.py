@@ -36,6 +36,7 @@ PHRASES = {
     'name its dimension: over the crank angle xarray.DataArray(values, {"theta2": degrees}, "theta2")': (
         "over the crank angle give it a CSV table"
     ),
+    'give it one of another name, as in xarray.DataArray([...], dims="k")': 'give it one of another name, as dim = "k"',
     'one value for each design xarray.DataArray(values, dims="design")': (
         'for several designs write { dim = "design", values = [...] }'
     ),

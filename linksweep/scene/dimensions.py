@@ -108,7 +108,7 @@ def _name_problems(dim: object, index: str, sharing: Arrays, arrays: Arrays, res
         yield f'{path} has a dimension "{dim}": that is the name of a result; rename it'
     elif dim in sharing and sharing[str(dim)].dims != (dim,):
         advice = 'give it one of another name, as in xarray.DataArray([...], dims="k")'
-        yield f"{dim} has dimensions {sharing[str(dim)].dims}: that of its name, as of ls.grid, goes alone; {advice}"
+        yield f"{dim} has dimensions {sharing[str(dim)].dims}: beside that of its own name it has no other; {advice}"
     elif dim in arrays and arrays[dim].dims != (dim,):
         yield f'{path} has a dimension "{dim}": that is the name of another parameter; rename it'
 

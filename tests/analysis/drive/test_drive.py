@@ -316,13 +316,13 @@ def test_the_least_margin_is_that_between_the_samples(theta2, margin, at):
 def test_least_margins_of_several_designs_motors_and_gears_by_dense_samples():
     """The third frame lets the crank turn to toggles alone, at which the torque grows without bound."""
     weak = ls.DCMotor(stall_torque=xr.DataArray([3.0, 2.0], dims="motor"), no_load_speed=400.0, inertia=1e-3)
-    ground = xr.DataArray([0.2, 0.205, 0.05], dims="frame")
+    ground = xr.DataArray([0.2, 0.205, 0.05], dims="base")
     scene = ls.Scene(replace(FOUR_BAR, ground=ground), 20.0, 300.0, gravity=(0.0, -9.81), loads=[SPRING])
     request = {"ratio": xr.DataArray([5.0, 10.0, 15.0], dims="ratio"), "efficiency": 0.9}
     result = ls.motor_load(scene, weak, theta2=36, **request)
     dense = ls.motor_load(scene, weak, theta2=14400, **request).torque_margin.min("theta2")
-    least, whole = result.torque_margin_min.transpose(*dense.dims), {"frame": slice(2)}
-    assert np.isneginf(least.isel(frame=2)).all()
+    least, whole = result.torque_margin_min.transpose(*dense.dims), {"base": slice(2)}
+    assert np.isneginf(least.isel(base=2)).all()
     np.testing.assert_allclose(least.isel(whole), dense.isel(whole), rtol=1e-5)
     assert (least <= dense + 1e-9).all()
 

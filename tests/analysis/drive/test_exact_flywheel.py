@@ -107,16 +107,16 @@ def test_smooth_machines_by_fourier_series(scene):
 
 
 def test_a_batch_has_the_bits_of_its_designs_and_shares_what_does_not_depend_on_the_flywheel():
-    ground = xr.DataArray([0.19, 0.2, 0.05], dims="frame")
+    ground = xr.DataArray([0.19, 0.2, 0.05], dims="base")
     press = ls.example("press")
     scene, aim = (
         replace(press, mechanism=replace(press.mechanism, ground=ground)),
         xr.DataArray([0.01, 0.1], dims="aim"),
     )
     wheel = ls.flywheel(scene, fluctuation=aim)
-    assert (wheel.drive_torque.dims, wheel.flywheel_inertia.dims) == (("frame",), ("frame", "aim"))
+    assert (wheel.drive_torque.dims, wheel.flywheel_inertia.dims) == (("base",), ("base", "aim"))
     assert (
-        np.isnan(wheel.isel(frame=2)[["speed", "flywheel_inertia", "energy_fluctuation", "speed_max_at"]])
+        np.isnan(wheel.isel(base=2)[["speed", "flywheel_inertia", "energy_fluctuation", "speed_max_at"]])
         .all()
         .to_array()
         .all()
@@ -124,7 +124,7 @@ def test_a_batch_has_the_bits_of_its_designs_and_shares_what_does_not_depend_on_
     for k, each in enumerate(ground.values[:2]):
         one = ls.flywheel(replace(press, mechanism=replace(press.mechanism, ground=float(each))), fluctuation=0.1)
         for name in one.drop_vars("status").data_vars:
-            own = wheel[name].isel(frame=k, aim=1, missing_dims="ignore").transpose(*one[name].dims)
+            own = wheel[name].isel(base=k, aim=1, missing_dims="ignore").transpose(*one[name].dims)
             np.testing.assert_array_equal(own, one[name], err_msg=name)
 
 

@@ -125,7 +125,7 @@ def test_all_problems_are_told_at_once():
 def test_a_number_of_a_grid_that_is_drawn_again_is_told_why_not():
     lengths = {"coupler.length": [0.2, 0.22]}
     around = {"coupler.length": ls.Tolerance(-1e-4, 1e-4)}
-    with pytest.raises(ValueError, match=r"^coupler.length has dimensions .*of its name, as of ls.grid, goes alone"):
+    with pytest.raises(ValueError, match=r"^coupler.length has dimensions .*of its own name it has no other"):
         ls.tolerance(ls.grid(PRESS, lengths), around, of="F32_peak", n=8)
     coupler = replace(PRESS.mechanism.coupler, length=xr.DataArray(lengths["coupler.length"], dims="k"))
     by_hand = replace(PRESS, mechanism=replace(PRESS.mechanism, coupler=coupler))  # as the message says

@@ -82,7 +82,7 @@ def test_check_tells_where_the_drive_stands_still(case, branch):
 
 
 def test_a_study_knows_its_unbounded_designs_and_pareto_leaves_them_out():
-    frames = xr.DataArray(np.linspace(-170.0, 170.0, 12), dims="frame")
+    frames = xr.DataArray(np.linspace(-170.0, 170.0, 12), dims="turned")
     torque = xr.DataArray([0.0, 2.0], dims="torque")
     massless = ls.Link(0.05, 0.0, 0.0), ls.Link(0.15, 0.0, 0.0)
     engine = ls.SliderCrank(*massless, slider_mass=0.0, slide_angle=frames)
