@@ -57,6 +57,8 @@ def check(scene: Scene) -> xr.Dataset:
     For a Linkage, by the exact search for peaks:
 
     - `assembly`, `arc_start`, `arc_end` as above, of any number of arcs
+    - `fails_at`: the pin, or link past a pin, that fails first at most crank angles where a design never closes, as in
+      `status_at`; none of other designs
     - `toggle_angle` (pin, toggle) [degree]: theta2 at which the links that find this pin lie in one line, or a rod
       stands square to its guide; NaN where other pins or designs have more toggles
     - `transmission_angle_min`, `transmission_angle_max` (pin) [degree]: extreme acute transmission angles on those

@@ -13,12 +13,16 @@ from linksweep.engine.quantity import opposite_of
 from linksweep.engine.run import Field
 from linksweep.results.compute import counts_without_angles
 from linksweep.results.dataset import flags
+from linksweep.results.peak_search.between import NEVER
 from linksweep.results.peak_search.exact import exact_peaks
 from linksweep.results.peak_search.friction.jams import jam_tables, may_jam
-from linksweep.results.peak_search.limits import Limits, assembly_of, limits_of
+from linksweep.results.peak_search.limits import Limits, assembly_of, limits_of, signals_of
 from linksweep.scene.dimensions import aligned
+from linksweep.scene.pairs import different_designs, quantities_at
 from linksweep.scene.scene import Scene
 
+FAILING = 72
+"""Crank angles at which a design that never closes is asked where it fails."""
 STEADY = 1e-9
 """Change of a transmission angle that is rounding [degree]: such an angle is the same throughout."""
 
@@ -55,10 +59,27 @@ def _of_motion(scene: Scene, pins: list[str]) -> dict[str, xr.Variable]:
     assembly = np.reshape(limits.assembly, tuple(sizes.values())).astype(np.int8)
     meanings = flags("crank angles at which it can be assembled", ASSEMBLY)
     variables = {"assembly": xr.Variable(tuple(sizes), assembly, meanings), "pin": xr.Variable("pin", pins)}
+    words = "pin, or link past a pin, that fails first at most crank angles where a design never closes"
+    fails_at = _fails_at(scene.unloaded, limits.assembly).reshape(assembly.shape)
+    variables["fails_at"] = xr.Variable(tuple(sizes), fails_at, flags(words, ("none", *scene.mechanism.places)))
     for name, (table, dims, words) in tables.items():
         values = table.reshape(*sizes.values(), *table.shape[1:])
         variables[name] = xr.Variable((*sizes, *dims), values, {"units": "degree", "long_name": words})
     return variables
+
+
+def _fails_at(unloaded: Scene, assembly: Array) -> Array:
+    """Return the number of the place at which each design that never closes fails first at most crank angles, as
+    `status_at` counts them; 0 for others."""
+    fails_at, never = np.zeros(len(assembly), dtype=np.int8), np.flatnonzero(assembly == NEVER)
+    if len(never):
+        designs = different_designs(unloaded, signals_of(unloaded.table.limits or ()))[never]
+        angles = np.arange(FAILING) * (unloaded.period_of_motion / FAILING)
+        pairs = np.repeat(designs, FAILING), np.tile(angles, len(never))
+        place = quantities_at(unloaded, ("status_at",), *pairs).reshape(len(never), FAILING)
+        counts = [np.count_nonzero(place == k, axis=1) for k in range(1, 1 + len(unloaded.mechanism.places))]
+        fails_at[never] = 1 + np.argmax(counts, axis=0)
+    return fails_at
 
 
 def _toggles(scene: Scene, limits: Limits, pins: list[str]) -> Array:

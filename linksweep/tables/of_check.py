@@ -17,6 +17,7 @@ ENDS = ("min", "max")
 """Extremes of a transmission angle, as the names of their findings end."""
 TITLES = {
     "assembly": "can be assembled",
+    "fails_at": "does not close at",
     "arc_start": "at theta2 from",
     "arc_end": "to",
     "toggle_angle": "toggles at theta2",
@@ -42,7 +43,8 @@ def check_table(ds: xr.Dataset) -> Table:
 def _lines(ds: xr.Dataset) -> Iterator[Line]:
     if "grashof" not in ds:
         of_pins = [*_of_pins(ds)]
-        others = [str(name) for name in ds.data_vars if name not in ("overshoot", *JAMS)]
+        left_out = {"overshoot", *JAMS} | (set() if "fails_at" in ds and ds.fails_at.any() else {"fails_at"})
+        others = [str(name) for name in ds.data_vars if name not in left_out]
         others = [name for name in others if not (of_pins and name.startswith("transmission_angle"))]
         yield from (line for name in others for line in _finding(ds, name))
         yield from of_pins

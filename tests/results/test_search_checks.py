@@ -153,3 +153,24 @@ def test_limits_have_the_dims_of_lengths_alone():
     never = (limits.assembly == 2).broadcast_like(peaks.F65_peak)
     np.testing.assert_array_equal(peaks.F65_peak.isnull(), never.transpose(*peaks.F65_peak.dims))
     assert never.any() and not never.all()
+
+
+def test_a_linkage_that_never_closes_names_the_pin_that_fails_first():
+    """No more than 0.08 + 0.30 m from A, E is out of reach of rod and output where G lies 2 m away, 0.20 + 0.15 m; C is
+    where D does, before F is."""
+    far = xr.DataArray([0.4, 2.0], dims="G"), xr.DataArray([0.2, 2.0], dims="D")
+    parts = {name: ls.Link(length, 0.0, 0.0) for name, length in LENGTHS.items()}
+    machine = ls.Linkage(
+        "crank A-B, coupler B-C-E, rocker D-C, rod E-F, output G-F",
+        ground={"A": (0.0, 0.0), "G": (far[0], 0.0), "D": (far[1], 0.0)},
+        points={"E": (0.30, 0.0)},
+        **parts,
+    )
+    check = ls.check(ls.Scene(machine, omega2=1.0))
+    assert check.fails_at.attrs["flag_meanings"] == "none C F"
+    assert check.fails_at.transpose("D", "G").values.tolist()[1] == [1, 1]
+    assert check.fails_at.sel(D=0, G=1) == 2 and check.fails_at.where(check.assembly < 2, 0).max() == 0
+    lines = repr(
+        ls.check(ls.Scene(replace(machine, ground={"A": (0.0, 0.0), "D": (2.0, 0.0), "G": (0.4, 0.0)}), 1.0)).linksweep
+    )
+    assert "does not close at:" in lines and lines.split("does not close at:")[1].split()[0] == "C"
