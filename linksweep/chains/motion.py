@@ -168,7 +168,7 @@ class Motion:
         """Add rows of a pin that its link carries."""
         k, start = self.number(role), frame.pin
         first, second, *_ = self.topology.links[role]
-        own, quotient = full(f"own{k}_{pin}"), full(f"quotient{k}_{start}_{pin}")
+        own, quotient = full(f"own{k}_{pin}"), full(f"quotient{k}_{pin}")
         arm = full(f"r{k}_{pin}" if start == first and pin != second else f"r{k}_{start}_{pin}")
         self.row(pins.between, own, *self.own(role, pin), *self.own(role, start))
         self.row(pins.quotient, quotient, *own, *frame.own)
