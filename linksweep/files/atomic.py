@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import IO, Any
 
 from linksweep.base.validate import refuse
-from linksweep.scene.file.text_file import kind_of
+from linksweep.scene.file.text_file import as_path, kind_of
 
 PREFIX, SUFFIX = ".linksweep-", ".part"
 """First and last characters of the names of temporary folders."""
@@ -55,7 +55,7 @@ def ending_of(path: str | os.PathLike[str], endings: tuple[str, ...], advice: st
 
     Raises ValueError, with `advice`, for an ending that is not among `endings`.
     """
-    ending = Path(path).suffix.lower()
+    ending = as_path(path).suffix.lower()
     refuse([] if ending in endings else [f"{path}: its ending must be {' or '.join(endings)}{advice}"])
     return ending
 

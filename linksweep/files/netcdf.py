@@ -20,7 +20,7 @@ from linksweep.results.dataset import design_coordinates, provenance
 from linksweep.scene.designs.lazy import in_memory
 from linksweep.scene.examples import names
 from linksweep.scene.file.reading import parse_scene, read_scene
-from linksweep.scene.file.text_file import kind_of
+from linksweep.scene.file.text_file import as_path, kind_of
 from linksweep.scene.file.writing import require_writable
 from linksweep.scene.parameters import replaced
 from linksweep.scene.scene import Scene
@@ -163,7 +163,7 @@ def load_scene(path: str | os.PathLike[str]) -> Scene:
     ...     ls.load_scene(os.path.join(folder, "cycle.nc")) == press
     True
     """
-    path = Path(path)
+    path = as_path(path)
     if path.suffix.lower() == ".toml":
         return read_scene(path)
     if not path.exists():

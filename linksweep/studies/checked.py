@@ -16,6 +16,7 @@ from xarray.core import indexing
 
 from linksweep.files.netcdf import NETCDF
 from linksweep.files.seal import sealed
+from linksweep.scene.file.text_file import as_path
 
 
 def open_study(path: str | os.PathLike[str]) -> xr.Dataset:
@@ -51,7 +52,7 @@ def open_study(path: str | os.PathLike[str]) -> xr.Dataset:
     >>> dict(again.sizes), float(again.F32_peak.min()) > 0.0
     ({'design': 8}, True)
     """
-    path = Path(path)
+    path = as_path(path)
     if not path.is_file():
         raise ValueError(f"{path}: there is no such file; linksweep.study makes it")
     sealed(path)

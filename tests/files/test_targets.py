@@ -228,3 +228,18 @@ def test_the_files_of_a_running_writer_are_kept(here):
         process.communicate("all of it")
     assert Path("slow.nc").read_text() == "all of it"
     assert sorted(os.listdir(here)) == ["quick.nc", "slow.nc"]
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        ls.load_scene,
+        ls.open_study,
+        lambda scene: ls.save(scene, scene),
+        lambda scene: ls.report("page.html", scene),
+        lambda scene: ls.save_drawing("press.svg", scene),
+    ],
+)
+def test_what_is_no_path_is_refused_by_its_kind(call):
+    with pytest.raises(ValueError, match=r"^path is a Scene: must be the name of a file$"):
+        call(ls.example("press"))

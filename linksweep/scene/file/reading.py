@@ -12,7 +12,7 @@ from linksweep.base.validate import refuse
 from linksweep.mechanisms import MECHANISMS, Mechanism
 from linksweep.scene.file.errors import Log, document
 from linksweep.scene.file.schema import build, kinds_of, read
-from linksweep.scene.file.text_file import text_of
+from linksweep.scene.file.text_file import as_path, text_of
 from linksweep.scene.scene import MECHANISM, Scene
 
 
@@ -30,7 +30,7 @@ def read_scene(path: str | Path) -> Scene:
     >>> read_scene(files("linksweep.scene.examples") / "press.toml").drive
     'crank'
     """
-    path = Path(path)
+    path = as_path(path)
     return parse_scene(text_of(path, str(path), ".toml"), str(path))
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import stat
 from pathlib import Path
+from typing import Any
 
 from linksweep.base.validate import closest
 
@@ -17,6 +18,14 @@ KINDS = {
     stat.S_IFCHR: "a device",
     stat.S_IFBLK: "a device",
 }
+
+
+def as_path(name: Any) -> Path:
+    """Return the path of a file. Raises ValueError for anything but a text or a path, such as a Scene."""
+    try:
+        return Path(name)
+    except TypeError:
+        raise ValueError(f"path is a {type(name).__name__}: must be the name of a file") from None
 
 
 def text_of(path: Path, name: str, ending: str, where: str = "", advice: str = "") -> str:
