@@ -51,9 +51,11 @@ def _named_values(scene: Scene) -> dict[str, Any]:
         over_designs(scene.mechanism.driven_numbers(scene.motion)),
         *(load.parameters(f"load{k}", machine) for k, load in enumerate(scene.loads, 1)),
     ]
-    names = [*chain.from_iterable(numbers)]
-    values = dict(chain.from_iterable(of_part.items() for of_part in numbers))
-    if len(values) < len(names):
+    values: dict[str, Any] = {}
+    for of_part in numbers:
+        values |= of_part
+    if len(values) < sum(map(len, numbers)):
+        names = [*chain.from_iterable(numbers)]
         refuse(scene.mechanism.clash_problems(repeated(names), names))
     return values
 
