@@ -15,13 +15,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.analysis.design.conditions import USUAL, Conditions
-from linksweep.analysis.design.result_derivatives import (
-    Derived,
-    derived,
-    problem_of_quantity,
-    result_problems,
-    result_value,
-)
+from linksweep.analysis.design.result_derivatives import Derived, derived, result_problems, result_value, whole_name
 from linksweep.base.validate import as_float, quote, refuse
 from linksweep.scene.parameters import replaced
 from linksweep.scene.scene import Scene
@@ -78,25 +72,18 @@ class ResultFunction:
 
 
 def checked_bounds(scene: Scene, subject_to: Any, conditions: Conditions = USUAL) -> dict[str, Bounds]:
-    """Return the bounds of results by name; ValueError for unknown names, and for what is no pair of bounds."""
+    """Return the bounds of results by whole name; ValueError for unknown names, and for what is no pair of bounds."""
     if subject_to is None:
         return {}
     if not isinstance(subject_to, Mapping):
         refuse([f'subject_to = {quote(subject_to)}: must be bounds by result, as in {{"swing": (50, None)}}'])
-    problems = [problem for name in subject_to for problem in _name_problems(scene, name, conditions)]
+    problems = [problem for name in subject_to for problem in result_problems(scene, "subject_to", name, conditions)]
     for name, ends in subject_to.items():
         pair = isinstance(ends, tuple | list) and len(ends) == 2
         sound = pair and all(end is None or as_float(end) is not None for end in ends) and tuple(ends) != (None, None)
         problems += [] if sound else [f"subject_to.{name} = {quote(ends)}: must be (low, high), numbers or one None"]
     refuse(problems)
-    return {name: (as_float(low), as_float(high)) for name, (low, high) in subject_to.items()}
-
-
-def _name_problems(scene: Scene, name: str, conditions: Conditions) -> list[str]:
-    """Return the problem of a name that is no result: also of a quantity alone, of whose extremes a bound means one."""
-    if name in scene.table.quantity:
-        return [problem_of_quantity(scene, "subject_to", name)]
-    return result_problems(scene, "subject_to", name, conditions)
+    return {whole_name(scene, name): (as_float(low), as_float(high)) for name, (low, high) in subject_to.items()}
 
 
 def one_sided(bounds: Mapping[str, Bounds]) -> list[tuple[str, str, float]]:

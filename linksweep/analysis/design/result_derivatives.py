@@ -138,15 +138,11 @@ def result_problems(scene: Scene, path: str, name: str, conditions: Conditions =
     if name in known or (quantity and quantity.units not in POSITIONS):
         return []
     if quantity:
-        return [problem_of_quantity(scene, path, name)]
+        results = ", ".join(f"{name}_{end}" for end in _ends(scene, name))
+        return [f"{path}: {name} is a quantity; name a result of it: {results}"]
     stem = name.rpartition("_")[0]
     problems = quantity_problems(path, stem if stem and name.rpartition("_")[2] in ENDS else name, known, scene)
     return problems or name_problems(path, name, known)
-
-
-def problem_of_quantity(scene: Scene, path: str, name: str) -> str:
-    """Return the problem of a quantity alone where one of its results is to be named."""
-    return f"{path}: {name} is a quantity; name a result of it: {', '.join(f'{name}_{e}' for e in _ends(scene, name))}"
 
 
 def split(scene: Scene, name: str) -> tuple[str, str]:
