@@ -6,12 +6,14 @@ import difflib
 import math
 import numbers
 import re
+from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
+Item = TypeVar("Item")
 UNITS = {
     "length": "m",
     "mass": "kg",
@@ -281,6 +283,11 @@ def closest(word: Any, known: Iterable[str]) -> str:
     close += difflib.get_close_matches(word, spelled, n=1, cutoff=0.6)
     close += [name for name in spelled if f"{name}_".startswith(f"{word}_") or word.startswith(f"{name}_")]
     return spelled[close[0]] if close else ""
+
+
+def repeated(items: Iterable[Item]) -> list[Item]:
+    """Return what stands more than once, each once."""
+    return [item for item, count in Counter(items).items() if count > 1]
 
 
 def refuse(problems: list[str]) -> None:

@@ -5,11 +5,12 @@ from __future__ import annotations
 import inspect
 import math
 import operator
-from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
+
+from linksweep.base.validate import repeated
 
 LAST_UNJAMMED = 3.5
 """Number above the statuses 0 to 3, and below those of a jam."""
@@ -133,8 +134,7 @@ class Table:
 
 def made_twice(rows: Iterable[Row | Total]) -> list[str]:
     """Return the names that two rows make."""
-    count = Counter(name for row in rows for name in row.outputs)
-    return [name for name in count if count[name] > 1]
+    return repeated(name for row in rows for name in row.outputs)
 
 
 def others(rows: Iterable[Row | Total], own: Iterable[Row | Total]) -> list[Row | Total]:

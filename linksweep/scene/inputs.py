@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from linksweep.base.validate import refuse
+from linksweep.base.validate import refuse, repeated
 from linksweep.chains.rows.crank import OverDesigns
-from linksweep.chains.topology.problems import repeated
 from linksweep.engine.run import Field
 from linksweep.engine.trace.plan import InputForms
 from linksweep.scene.dimensions import side_by_side

@@ -7,9 +7,8 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from fractions import Fraction
 from itertools import combinations, count
 from keyword import iskeyword
-from typing import TypeVar
 
-from linksweep.base.validate import closest, did_you_mean
+from linksweep.base.validate import closest, did_you_mean, repeated
 from linksweep.chains.topology.text import PIN, RATIO, Part
 from linksweep.chains.topology.topology import GROUND, Topology
 
@@ -21,13 +20,6 @@ RESERVED = {
 
 QUANTITY = re.compile(r"(theta|omega|alpha|F|T|R|aG|ratio|slope)[0-9].*")
 """Names of quantities that number the links, such as theta2."""
-Name = TypeVar("Name", str, tuple[int, int])
-
-
-def repeated(names: Iterable[Name]) -> list[Name]:
-    """Return the names that stand more than once, each once."""
-    names = list(names)
-    return [name for name in dict.fromkeys(names) if names.count(name) > 1]
 
 
 def taken_names(parts: list[Part], reserved: Collection[str]) -> dict[str, str]:
