@@ -2,9 +2,9 @@
 
 All signals of a few designs are evaluated at the samples of the turn. One pass keeps each signal's best summit: the
 sample whose neighbours allow the highest peak. The quartic through five samples about it predicts the peak, and four
-evaluations confirm it. Where they do not, where another summit may be as high or hide between samples far apart, or
-where signals jump, brackets about all summits that may be the highest are refined (`engine.peaks.brackets`): those of
-many designs at once.
+evaluations confirm it. Where they do not, where another summit may be as high, or hide between samples that are far
+apart or level, or where signals jump, brackets about all summits that may be the highest are refined
+(`engine.peaks.brackets`): those of many designs at once.
 
 `search` is plain Python that is translated to machine code. Arithmetic in lanes is traced and written as vector
 instructions. A design has the same bits whichever others stand beside it, and where nothing is compiled.
@@ -37,10 +37,10 @@ CAUTION = 3.0
 # rows of `state`, a column for each lane of each signal: results, in the order of the rows of `best`; whether they are
 # final, or confirmed while another summit may be higher
 FINAL, CONFIRMED = range(EVALUATIONS + 1, EVALUATIONS + 3)
-# the number of the best summit, the height that it may reach, and any other
-SUMMIT, REACH, OTHER = range(EVALUATIONS + 3, EVALUATIONS + 6)
-SAMPLED = EVALUATIONS + 6  # five samples about the summit
-PLACES = SAMPLED + 5  # the tangents at three of them
+# the number of the best summit, the height that it may reach, and any other; that of one between samples beside it
+SUMMIT, REACH, OTHER, HIDDEN = range(EVALUATIONS + 3, EVALUATIONS + 7)
+SAMPLED = EVALUATIONS + 7  # seven samples about the summit
+PLACES = SAMPLED + 7  # the tangents at three of them
 HALF_TURN, NUMBER = range(PLACES + 3, PLACES + 5)  # the half turn of the summit; the number of the signal
 # vertex of the quartic through the samples, curvature there, third derivative; all steps are those between samples
 VERTEX, CURVATURE, THIRD = range(PLACES + 5, PLACES + 8)
@@ -53,7 +53,8 @@ SLOPE, BEND, GAIN, LOSS, SOUND = range(PLACES + 20, PLACES + 25)
 BEFORE = PLACES + 25  # the first of the last two samples
 STATE_ROWS = PLACES + 26
 
-FIVE, THREE = tuple(range(SAMPLED, SAMPLED + 5)), tuple(range(PLACES, PLACES + 3))
+SEVEN, THREE = tuple(range(SAMPLED, SAMPLED + 7)), tuple(range(PLACES, PLACES + 3))
+FIVE = SEVEN[1:6]
 NOTHING_YET = {SUMMIT: 0.0, REACH: -math.inf, OTHER: -math.inf}
 
 
@@ -82,6 +83,7 @@ def search(
             compare_samples(rows, SAMPLES, columns, state)
             for k in range(columns):
                 pick_sample(samples, k, state, k)
+            look_beside(state, columns)
             try_vertices(own, state, columns, lanes, -1, evaluate)
             for signal in range(signals):
                 column, tag = signal * lanes, signal * width + block * lanes
@@ -94,6 +96,7 @@ def search(
                             refine(brackets, count, lanes, width, start * lanes, constants, gathered, evaluate, best)
                             count = 0
                         k = column + lane
+                        close = close or best[PEAK, tag + lane] < state[HIDDEN, k]
                         trusted = smooth and not sparse and state[CONFIRMED, k] > 0.0
                         known = int(state[SUMMIT, k]) if trusted else -1
                         count = open_brackets(
@@ -204,18 +207,25 @@ def with_summit(height, number, summit, reach, other):
 
 
 def pick_sample(samples, column, state, k):
-    """Copy five of the samples in a column, those about the best summit, and the places of three; no peak is final near
-    the ends of a half turn."""
+    """Copy seven of the samples in a column, those about the best summit, and the places of three; no peak is final
+    near the ends of a half turn."""
     rows, x, half, lanes, columns = samples
     j = int(state[SUMMIT, k])
     far = 1 if j >= 2 * half else 0
     inside = 2 <= j - 2 * half * far < 2 * half - 2
     j, far = (j, far) if inside else (half, 0)
     state[HALF_TURN, k], state[SOUND, k] = far, inside
-    for near in range(5):
-        state[SAMPLED + near, k] = rows[(j + near - 2) * columns + column]
+    for near in range(7):
+        state[SAMPLED + near, k] = rows[(j + near - 3) % (4 * half) * columns + column]
     for near in range(3):
         state[PLACES + near, k] = x[(j + near + 2 * far) * lanes + column % lanes]
+
+
+@lanewise((*SEVEN, OTHER), (HIDDEN, OTHER))
+def look_beside(f0, f1, f2, f3, f4, f5, f6, other):
+    """Note the height that a summit beside the best one may reach: on a level top, between samples that rise to it."""
+    hidden = larger(height_between(f0, f1, f2, f3), height_between(f3, f4, f5, f6))
+    return hidden, larger(hidden, other)
 
 
 @lanewise((*FIVE, *THREE), (VERTEX, CURVATURE, THIRD, Z_LEFT, X_LEFT, Z_RIGHT, X_RIGHT))

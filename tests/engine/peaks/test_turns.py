@@ -26,7 +26,7 @@ LANEWISE = {
 SPECIAL = (0.0, -0.0, 1.0, np.inf, -np.inf, np.nan)
 
 
-def table(seed: int, columns: int = 24) -> np.ndarray:
+def table(seed: int, columns: int = 240) -> np.ndarray:
     random = np.random.default_rng(seed)
     numbers = random.normal(size=(turns.STATE_ROWS, columns)) * 10.0 ** random.integers(-3, 4, columns)
     special = random.random(numbers.shape) < 0.05
@@ -36,7 +36,7 @@ def table(seed: int, columns: int = 24) -> np.ndarray:
 
 @pytest.mark.parametrize("name", LANEWISE)
 def test_lanes_have_the_same_bits_compiled_and_interpreted(name):
-    function, columns = LANEWISE[name], 24
+    function, columns = LANEWISE[name], 240
     compiled, interpreted = table(3), table(3)
     samples = np.random.default_rng(4).normal(size=SAMPLES * columns), SAMPLES, columns
     for lanes, numbers in ((function.compiled(), compiled), (function, interpreted)):
