@@ -56,11 +56,12 @@ class Curve(NamedTuple):
 
 
 class Mark(NamedTuple):
-    """A peak to be marked on a curve, and its name."""
+    """A peak to be marked on a curve, its name, and whether it gets a label besides its dot."""
 
     peak: signals.Peak
     curve: Curve
     name_at_peak: str
+    labelled: bool = True
 
 
 def forces(ds: xr.Dataset, of: Iterable[str] | None = None, *, ax: Axes | None = None) -> Axes:
@@ -79,9 +80,9 @@ def forces(ds: xr.Dataset, of: Iterable[str] | None = None, *, ax: Axes | None =
     Returns
     -------
     matplotlib Axes
-        Axes with a legend. Angles without a result are a gap in the lines, shaded. Where forces grow without bound,
-        beside a gap or at a dead centre, the axis ends at a usual size, and peaks beyond it are marked at the upper
-        edge as off the scale.
+        Axes with a legend. Of more than eight peaks, those below half of the largest have a dot, and no value. Angles
+        without a result are a gap in the lines, shaded. Where forces grow without bound, beside a gap or at a dead
+        centre, the axis ends at a usual size, and peaks beyond it are marked at the upper edge as off the scale.
 
     Raises
     ------
@@ -113,7 +114,10 @@ def forces(ds: xr.Dataset, of: Iterable[str] | None = None, *, ax: Axes | None =
     crank_angles(ax, curves[0].angles)
     runaway = any(peak.value > HEADROOM * top for peak, _ in peaks)
     _legend(ax, curves, widest, runaway)
-    _mark(ax, [Mark(peak, curve, curve.name_at_peak) for peak, curve in peaks if peak.value > 0.0], units)
+    peaks = [(peak, curve) for peak, curve in peaks if peak.value > 0.0]
+    labelled = signals.labelled([peak.value for peak, _ in peaks])
+    marks = [Mark(*mark, mark[1].name_at_peak, label) for mark, label in zip(peaks, labelled, strict=True)]
+    _mark(ax, marks, units)
     return ax
 
 
@@ -301,6 +305,8 @@ def _mark(ax: Axes, marks: Sequence[Mark], units: str) -> None:
         edge = "^" if mark.peak.value > y else "v"
         dot = {"color": mark.curve.style["color"], "markersize": 4.5, "clip_on": False}
         ax.plot([x], [y], edge if y != mark.peak.value else "o", label=f"_peak {mark.curve.name}", **dot)
+        if not mark.labelled:
+            continue
         near = (g for g in groups if abs(g[-1][0] - x) < reach[0] and abs(g[-1][1] - y) < reach[1])
         group = next(near, None)
         groups.append([(x, y, mark)]) if group is None else group.append((x, y, mark))

@@ -286,11 +286,12 @@ def _forces(
     """Draw an arrow from each joint, to one scale, with its value."""
     from linksweep.plot.kit.labels import arrow, label
 
-    for name, vector in forces.items():
-        size = float(np.hypot(*vector))
+    sizes = [float(np.hypot(*vector)) for vector in forces.values()]
+    for (name, vector), size, labelled in zip(forces.items(), sizes, signals.labelled(sizes), strict=True):
         if size > 0.0:
             tip = starts[name] + vector * scale
             arrow(ax, starts[name], tip, force_color(name))
+        if size > 0.0 and labelled:
             label(ax, *tip, (f"{signals.symbol(name)} {_measure(size, 'N', system)}", force_color(name)))
 
 

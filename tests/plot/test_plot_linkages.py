@@ -1,8 +1,10 @@
 """Drawings of linkages: pins at the links' lengths, plates, blocks on their guides, the curve of a free pin."""
 
+from itertools import combinations
+
 import numpy as np
 import pytest
-from drawn import closed_figures, line, page_hides_nothing, texts  # noqa: F401
+from drawn import boxes, closed_figures, line, page_hides_nothing, texts  # noqa: F401
 
 import linksweep as ls
 from linksweep import plot
@@ -60,6 +62,27 @@ def test_a_cycle_of_a_press_has_all_forces_in_its_legend():
     legend = [text.get_text() for text in ax.get_legend().get_texts()]
     assert [text.split("(")[1] for text in legend if ":" in text] == ["C:upper)", "C:lower)"]
     assert ax.get_ylabel() == "pin and slide force [N]"
+
+
+def test_of_many_forces_those_of_half_of_the_largest_have_their_values():
+    """Twelve values covered each other; all twelve have a dot and a place in the legend."""
+    ds = ls.sweep(ls.example("scissor-lift"))
+    figure = ds.linksweep.cycle()
+    machine, curves, _locus, _torque = figure.axes
+    peaks = ls.peaks(ls.example("scissor-lift"))
+    dots = [line.get_label().removeprefix("_peak ") for line in curves.lines if line.get_label().startswith("_peak")]
+    sizes = {name: float(peaks[f"{name}_peak"]) for name in dots}
+    large = {f"$F_{{{name[1:]}}}$" for name, size in sizes.items() if size >= 0.5 * max(sizes.values())}
+    assert len(dots) == len(curves.get_legend().get_texts()) == 12
+    assert {word for text in texts(curves) for word in text.split() if word.startswith("$F")} == large
+    assert {text.split()[0] for text in texts(machine) if text.startswith("$F")} == large
+    values = [*boxes(curves), curves.get_legend().get_window_extent()]
+    assert not any(one.overlaps(other) for one, other in combinations(values, 2))
+
+
+def test_a_direction_of_zero_has_no_sign():
+    ax = ls.sweep(ls.example("scotch-yoke")).linksweep.bearing("F12")
+    assert any("direction 0.0°" in text for text in texts(ax))
 
 
 def test_over_a_part_of_the_turn_the_point_has_that_part_of_its_curve():

@@ -98,7 +98,7 @@ def _arrow(ax: Axes, name: str, largest: signals.Peak, force: np.ndarray, units:
 
     beyond = largest.value > BEYOND * usual
     tip = force * (BEYOND * usual / np.hypot(*force)) if beyond else force
-    direction = np.degrees(np.arctan2(force[1], force[0]))
+    direction = round(float(np.degrees(np.arctan2(force[1], force[0]))), 1) + 0.0  # no −0.0
     lines = (
         f"{signals.force_symbol(name)} = {signals.number(largest.value)} {units}",
         f"{'off scale ' * beyond}at $\\theta_2$ = {signals.angle_text(largest.angle)}",

@@ -19,6 +19,7 @@ from linksweep.tables.cells import number as number
 INDEX = "theta2"
 WHOLE_TURN = "whole_turn"  # attribute of a cycle whose angles are no even grid, though they go all the way round
 MOST_LINES = 6  # designs that one plot still tells apart
+MOST_LABELS = 8  # forces whose labels all find room
 
 
 class Gap(NamedTuple):
@@ -223,6 +224,12 @@ def _largest_away_from_gaps(angles: np.ndarray, sizes: np.ndarray) -> float:
         low, high = first + near * (start > 0), last - near * (stop < len(sizes))
         kept.append(float(np.max(sizes[arc], initial=0.0, where=(low <= angles[arc]) & (angles[arc] <= high))))
     return max(kept)
+
+
+def labelled(sizes: Sequence[float]) -> list[bool]:
+    """Return which of some forces get a label: all of a few, of many those of at least half of the largest."""
+    least = 0.5 * max(sizes, default=0.0) if len(sizes) > MOST_LABELS else 0.0
+    return [size >= least for size in sizes]
 
 
 def angle_text(angle: float) -> str:
