@@ -54,7 +54,8 @@ def open_bracket(brackets, k, before, middle, after, far, signal, tag, floor):
     brackets[XC, k], brackets[FC, k] = after
     brackets[FAR, k], brackets[SIGNAL, k], brackets[TAG, k], brackets[FLOOR, k] = far, signal, tag, floor
     width = brackets[XC, k] - brackets[XA, k]
-    brackets[WIDTH, k], brackets[FIRST_WIDTH, k] = 4.0 * width, width  # 4.0: not counted as slow at first
+    # counted as slow: both sides are bisected first, for a bracket may hold two tops
+    brackets[WIDTH, k], brackets[FIRST_WIDTH, k] = width, width
 
 
 def evaluate_trials(brackets, first, last, constants, evaluate):
@@ -89,8 +90,8 @@ def place_trials(a, f_a, b, f_b, c, f_c, last_width, first_width):
 def insert_trials(a, f_a, b, f_b, c, f_c, x1, x2, x3, f1, f2, f3, first_width, floor):
     """Insert the trials of each bracket, and note the rise that remains possible, and whether it has converged."""
     bracket = a, f_a, b, f_b, c, f_c
-    for x, f in ((x1, f1), (x2, f2), (x3, f3)):
-        bracket = insert_point(bracket, x, f)
+    for x, f in (highest((x1, f1), (x2, f2), (x3, f3)), (x1, f1), (x2, f2), (x3, f3)):
+        bracket = insert_point(bracket, x, f)  # the highest first: beyond a lower one it would lie outside
     a, f_a, b, f_b, c, f_c = bracket
     top = f_b - 0.5 * RISE * abs(f_b)  # lowered by half the tolerance
     rise = larger((top - f_a) * ((c - b) / (b - a)), (top - f_c) * ((b - a) / (c - b)))
@@ -117,6 +118,14 @@ def insert_point(bracket, x, f):
         (a < x).where((x < b).where(higher.where(*p), (b < x).where((x < c).where(higher.where(*q), old), old)), old)
         for p, q, old in zip(before, after, bracket, strict=True)
     )
+
+
+def highest(first, *others):
+    """Return the point of largest value."""
+    for point in others:
+        higher = point[1] > first[1]
+        first = tuple(higher.where(*pair) for pair in zip(point, first, strict=True))
+    return first
 
 
 def vertex_step(a, f_a, b, f_b, c, f_c):
