@@ -56,7 +56,8 @@ def mechanism(
     link : str, default None
         Role of that link; None for the coupler or rod, of an inverted slider-crank the rocker.
     forces : bool, default False
-        True for arrows of the force in each joint, to one scale with those of the loads.
+        True for arrows of the force in each joint, to one scale with those of the loads. Of more than eight forces,
+        those below half of the largest have no value.
 
     Returns
     -------
