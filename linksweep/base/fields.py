@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from linksweep.base.conversion import to_float64
-from linksweep.base.units import text_problems
+from linksweep.base.units import KINDS, text_problems
 from linksweep.base.validate import Rule, choice_problems, is_array, is_quantity, number_problems, quote
 
 
@@ -29,6 +29,11 @@ class FieldKind:
 
     example: str = '"..."'
     inline: bool = False
+
+    @property
+    def requirement(self) -> str:
+        """The value that the field requires, in words."""
+        return f"a text, such as {self.example}"
 
     def sound(self, value: Any) -> bool:
         """Return whether a value needs no conversion and has no problems, as far as one look tells."""
@@ -53,6 +58,10 @@ class NumberField(FieldKind):
 
     rule: Rule
     parts: Collection[type] = ()
+
+    @property
+    def requirement(self) -> str:
+        return f'{self.rule.number}, or a text such as "{KINDS[self.rule.kind].example}"'
 
     def sound(self, value: Any) -> bool:
         return type(value) is float and self.rule.allows(value)
@@ -87,11 +96,6 @@ class ChoiceField(FieldKind):
 
 class ListField(FieldKind):
     """A field that holds a list, each item of a kind of its own."""
-
-    @property
-    def requirement(self) -> str:
-        """The value that the field requires, in words."""
-        raise NotImplementedError
 
     def converted(self, value: Any) -> Any:
         kinds = self.items(value)
@@ -178,8 +182,12 @@ class PartField(FieldKind):
         *others, last = self.by_name
         return f"{', '.join(others)} or {last}" if others else last
 
+    @property
+    def requirement(self) -> str:
+        return f"a {self.words}"
+
     def problems(self, path: str, value: Any) -> list[str]:
-        return [] if isinstance(value, self.base) else [f"{path} = {quote(value)}: must be a {self.words}"]
+        return [] if isinstance(value, self.base) else [f"{path} = {quote(value)}: must be {self.requirement}"]
 
 
 @dataclass(frozen=True)

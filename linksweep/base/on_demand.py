@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import sys
 from collections.abc import Callable, Mapping
+from dataclasses import is_dataclass
 from importlib import import_module
 from importlib.abc import Loader, MetaPathFinder
 from importlib.machinery import ModuleSpec
@@ -27,7 +28,14 @@ def public_name(package: str, name: str, modules: Mapping[str, str]) -> Any:
     if name not in modules:
         raise AttributeError(f"module {package!r} has no attribute {name!r}")
     module = modules[name]
-    return import_module(f"{package}.{name}") if module == package else getattr(import_module(module), name)
+    if module == package:
+        return import_module(f"{package}.{name}")
+    item = getattr(import_module(module), name)
+    if not (isinstance(item, type) and is_dataclass(item)):
+        return item
+    from linksweep.base.frozen import with_clear_calls
+
+    return with_clear_calls(item)
 
 
 def when_imported(name: str) -> Callable[[Action], Action]:

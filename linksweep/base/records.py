@@ -73,6 +73,10 @@ class NamedField(FieldKind):
     each: FieldKind
     meaning: str
 
+    @property
+    def requirement(self) -> str:
+        return f"a dict of {self.meaning} by name"
+
     def converted(self, value: Any) -> Any:
         """Return the record of a mapping; anything else, and a mapping with other keys than names, as it is."""
         if not isinstance(value, Mapping) or any(map(_name_problems, value)):
@@ -82,7 +86,7 @@ class NamedField(FieldKind):
 
     def problems(self, path: str, value: Any) -> list[str]:
         if not isinstance(value, Mapping):
-            return [f"{path} = {quote(value)}: must be a dict of {self.meaning} by name"]
+            return [f"{path} = {quote(value)}: must be {self.requirement}"]
         if names := [f"{path}: {problem}" for name in value for problem in _name_problems(name)]:
             return names
         prefix = "" if self.inline else f"{path}."

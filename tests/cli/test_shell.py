@@ -161,7 +161,7 @@ NO_COMMAND = """
     scene/derivatives/sloped.py scene/designs/combinations.py
     scene/designs/distributions.py scene/designs/drawing.py scene/designs/sampling.py
     studies/cluster.py studies/scene_at.py studies/screen_request.py tables/of_any.py reports/page.py
-    reports/notebook.py results/check.py files/netcdf.py
+    reports/notebook.py results/check.py files/netcdf.py base/frozen.py
 """
 """Files with messages that no command can meet: of functions of theta2, of several cylinders, of Datasets, of calls
 that have no command, and texts that are no messages."""

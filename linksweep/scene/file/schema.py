@@ -105,8 +105,7 @@ def advice(kind: FieldKind, where: Where) -> str:
 
 @advice.register
 def _number_advice(kind: NumberField, where: Where) -> str:
-    measure = KINDS[kind.rule.kind]
-    return f'write {where[-1]} = "{measure.example}", or a number in {measure.unit}'
+    return f'write {where[-1]} = "{KINDS[kind.rule.kind].example}", or {kind.rule.number}'
 
 
 @advice.register

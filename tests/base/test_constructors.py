@@ -1,0 +1,62 @@
+"""Constructors name their parameters where they are called with others; objects say how a new one is made."""
+
+import copy
+import inspect
+import pickle
+from dataclasses import FrozenInstanceError, replace
+
+import pytest
+
+import linksweep as ls
+
+BAR = {"length": 0.1, "width": 0.02, "thickness": 0.02, "density": 7850.0}
+FIELDS = "crank, coupler, rocker, ground, branch, ground_angle"
+CALLS = {
+    f"frame = 0.2: FourBar has no such parameter; it has {FIELDS}": lambda: ls.FourBar(
+        *[ls.Bar(**BAR)] * 3, 0.1, frame=0.2
+    ),
+    'density: missing; must be a number in kg/m^3, or a text such as "7.75 g/cm^3"': lambda: ls.Bar(0.1, 0.02, 0.02),
+    'compression_ratio: missing; must be a number, or a text such as "10 %"': lambda: ls.OttoCycle(peak_pressure=4e6),
+    "torques: missing; Motor needs speeds, torques": lambda: ls.Motor([0.0, 10.0]),
+    'link: missing; must be a text, such as "coupler"': ls.Load,
+    "crank: missing; must be a Link, Bar or Disk": lambda: ls.SliderCrank(rod=ls.Bar(**BAR), slider_mass=1.0),
+    "ground: missing; must be a dict of pins (x, y) by name": lambda: ls.Linkage("crank A-B, rod B-C, rocker D-C"),
+    "outer = 0.2: stands twice, in its place and by its name; leave one out": lambda: ls.Tube(0.1, outer=0.2),
+    "3 values without a name: Tube takes at most 2, outer, inner": lambda: ls.Tube(0.1, 0.05, 0.02),
+    "outside = 0.2: Tube has no such parameter; it has outer, inner\n"
+    'outer: missing; must be a number in m, or a text such as "8 cm"': lambda: ls.Tube(outside=0.2),
+    "diameter = 0.2: Tube has no such parameter; it has outer, inner": lambda: replace(ls.Tube(0.1), diameter=0.2),
+}
+
+
+@pytest.mark.parametrize(("message", "call"), CALLS.items())
+def test_a_call_that_does_not_fit_names_what_is_unknown_and_what_is_missing(message, call):
+    with pytest.raises(TypeError) as refused:
+        call()
+    assert str(refused.value) == message
+
+
+def test_a_type_error_within_a_call_that_fits_is_passed_on(monkeypatch):
+    def fails(bar):
+        raise TypeError("of its own")
+
+    monkeypatch.setattr(ls.Bar, "__post_init__", fails)
+    with pytest.raises(TypeError, match=r"^of its own$"):
+        ls.Bar(**BAR)
+
+
+def test_an_assignment_names_the_way_to_a_new_object_or_the_fields():
+    tube = ls.Tube(0.1, 0.05)
+    with pytest.raises(FrozenInstanceError) as refused:
+        tube.inner = 0.06
+    way = "dataclasses.replace(old, inner=...)"
+    assert str(refused.value) == f"inner = 0.06: Tube objects do not change; make a new one, {way}"
+    with pytest.raises(FrozenInstanceError, match=r"^bore = 0\.06: Tube has no such parameter; it has outer, inner$"):
+        tube.bore = 0.06
+    assert (tube.outer, tube.inner) == (0.1, 0.05)
+
+
+def test_public_classes_keep_their_signatures_and_copies():
+    assert [*inspect.signature(ls.Tube).parameters] == ["outer", "inner"]
+    tube = ls.Tube(0.1, 0.05)
+    assert pickle.loads(pickle.dumps(tube)) == copy.deepcopy(tube) == tube
