@@ -35,6 +35,10 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 SOLID, DASHED, DOTTED = "-", (0.0, (5.0, 2.0)), (0.0, (1.5, 1.5))
+BROKEN = {SOLID: DASHED, DASHED: DOTTED}
+"""Line of a curve that would hide another of its own kind."""
+WIDTH = 0.005
+"""Width of a line, in sizes of its curve."""
 STYLES = ((BLUE, SOLID), (VERMILION, DASHED), (GREEN, SOLID), (PURPLE, DASHED), (ORANGE, DOTTED), (BLACK, DOTTED))
 ROOM = 1.0 / 30.0  # of the angle axis: what an upright word takes
 ONE_LINE, COLUMNS = 4, 3  # curves whose legend stands in one line; columns of a longer one
@@ -221,8 +225,19 @@ def _curves(
 
 def _draw(ax: Axes, curves: Sequence[Curve]) -> None:
     grid(ax)
-    for curve in curves:
-        ax.plot(curve.angles, curve.values, label=curve.text, **curve.style)
+    for k, curve in enumerate(curves):
+        dashes = curve.style["linestyle"]
+        seen = BROKEN.get(dashes, dashes) if any(_on_top(curve, other) for other in curves[:k]) else dashes
+        ax.plot(curve.angles, curve.values, label=curve.text, **curve.style | {"linestyle": seen})
+
+
+def _on_top(curve: Curve, other: Curve) -> bool:
+    """Return whether a curve hides another: they differ by less than the width of a line."""
+    finite = np.abs(other.values[np.isfinite(other.values)])
+    if len(curve.values) != len(other.values) or not finite.size:
+        return False
+    near = np.isclose(curve.values, other.values, rtol=WIDTH, atol=WIDTH * np.median(finite), equal_nan=True)
+    return bool(near.all())
 
 
 def _span(ax: Axes, extremes: Sequence[signals.Peak], size: float) -> None:

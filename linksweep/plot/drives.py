@@ -349,7 +349,8 @@ def run_up(ds: xr.Dataset, *, ax: Axes | None = None) -> Axes:
     lines = ax.get_lines()
     if torque is not None:
         beside = ax.twinx()
-        lines += beside.plot(time, system.value(torque, "N m"), color=VERMILION, linewidth=1.0, label="motor torque")
+        row = system.value(torque, "N m")  # of turning backwards, it may lie on the speed
+        lines += beside.plot(time, row, "-.", color=VERMILION, linewidth=1.2, label="motor torque")
         beside.set_ylabel(f"motor torque [{system.unit('N m')}]")
     legend_above(ax, handles=lines, ncols=3)
     return ax

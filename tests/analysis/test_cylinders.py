@@ -105,6 +105,11 @@ def test_a_bank_equals_a_rotated_guide(bank):
         np.testing.assert_allclose(one[name][smooth], cycle[name][smooth], rtol=1e-9, atol=1e-10 * largest)
 
 
+def test_results_have_the_title_of_the_whole_machine():
+    twin = ls.MultiCylinder(ENGINE, [0, 360])
+    assert twin.sweep(8).attrs["title"] == ls.peaks(twin, of="T12").attrs["title"] == "linksweep: MultiCylinder"
+
+
 def test_designs_are_batched():
     speeds = xr.DataArray([100.0, 200.0], {"speed": [1, 2]}, "speed")
     cycle = ls.MultiCylinder(replace(ENGINE, omega2=speeds), [0, 540, 180, 360]).sweep(theta2=36)

@@ -88,6 +88,13 @@ def test_a_cycle_of_constant_speed_has_no_extremes():
     assert speed.get_ylim() == pytest.approx((0.0, 1.2 * omega))
 
 
+def test_the_torque_of_a_run_backwards_is_seen_on_top_of_its_speed():
+    motor = ls.DCMotor(stall_torque=10.0, no_load_speed=160.0, inertia=0.004)
+    run = ls.run_up(replace(PRESS, omega2=-30.0), motor, ratio=5.0, until=0.2)
+    ax, beside = ls.plot.run_up(run).figure.axes
+    assert (ax.lines[0].get_linestyle(), beside.lines[0].get_linestyle()) == ("-", "-.")
+
+
 @pytest.mark.parametrize("frame", ["ground", "journal"])
 def test_three_pins_have_a_fourth_panel(frame):
     cycle = with_peaks(ls.sweep(ls.example("engine"), theta2=90))

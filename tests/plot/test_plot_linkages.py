@@ -80,6 +80,15 @@ def test_of_many_forces_those_of_half_of_the_largest_have_their_values():
     assert not any(one.overlaps(other) for one, other in combinations(values, 2))
 
 
+def test_of_two_curves_on_top_of_each_other_both_are_seen():
+    """Crank pin and yoke of a pump without masses in between bear the same force; the pins of a press differ."""
+    crank, _slide, yoke = plot.forces(ls.sweep(ls.example("scotch-yoke"))).lines[:3]
+    np.testing.assert_allclose(crank.get_ydata(), yoke.get_ydata(), rtol=1e-2)
+    assert crank.get_linestyle() == "-" and yoke.get_linestyle() == "--"
+    F12, _F32, F43, _F14 = plot.forces(ls.sweep(ls.example("press"))).lines[:4]
+    assert F12.get_linestyle() == F43.get_linestyle() == "-"
+
+
 def test_a_direction_of_zero_has_no_sign():
     ax = ls.sweep(ls.example("scotch-yoke")).linksweep.bearing("F12")
     assert any("direction 0.0°" in text for text in texts(ax))

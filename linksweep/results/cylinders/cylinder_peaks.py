@@ -7,8 +7,8 @@ import xarray as xr
 
 from linksweep.base.validate import name_problems
 from linksweep.results.cylinders.cylinders_between import exact_peaks_of_sums
-from linksweep.results.cylinders.multi_cylinder import SHAKING, MultiCylinder
-from linksweep.results.dataset import design_coordinates, joined, origin_attributes
+from linksweep.results.cylinders.multi_cylinder import SHAKING, MultiCylinder, attributes_of
+from linksweep.results.dataset import design_coordinates, joined
 from linksweep.results.peak_search.limits import assembly_of
 from linksweep.results.peak_search.quadrature import means
 from linksweep.results.scene_peaks import (
@@ -57,8 +57,7 @@ def _of_sums(machine: MultiCylinder, sums: list[Request]) -> xr.Dataset:
     each = [status_of(*pair) for pair in zip(machine.cylinders, results, strict=True)]
     worst = xr.Variable(each[0].dims, np.max([status.values for status in each], axis=0), each[0].attrs)
     variables, coordinates = labelled(sums, results[0]) | {"status": worst}, design_coordinates(results[0].sampled)
-    attributes = origin_attributes(machine.engine, "") | {"title": "linksweep: MultiCylinder"}
-    return xr.Dataset(variables, coordinates, attributes)
+    return xr.Dataset(variables, coordinates, attributes_of(machine, ""))
 
 
 def _of_pins(machine: MultiCylinder, names: list[str]) -> xr.Dataset:

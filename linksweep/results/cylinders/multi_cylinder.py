@@ -230,7 +230,7 @@ class MultiCylinder(ByContent):
             name: values.where(status == 0).assign_attrs(self._attributes(name)) for name, values in sums.items()
         }
         command = f"linksweep.MultiCylinder(...).sweep(theta2={quote(theta2)})"
-        ds = xr.Dataset(labelled | {"status": status}, attrs=origin_attributes(self.engine, command))
+        ds = xr.Dataset(labelled | {"status": status}, attrs=attributes_of(self, command))
         return ds.assign_coords(index_coordinate(self.engine, grid))
 
     def _attributes(self, name: str) -> dict[str, Any]:
@@ -238,6 +238,11 @@ class MultiCylinder(ByContent):
         quantity, scene = self.quantity[name], self.engine
         cycle = scene.period if changes(scene, sources_of((name,), self.rules)) else scene.period_of_motion
         return {"units": quantity.units, "long_name": quantity.long_name, CYCLE: cycle}
+
+
+def attributes_of(machine: MultiCylinder, command: str) -> dict[str, Any]:
+    """Return the attributes of a Dataset of all cylinders that a command makes."""
+    return origin_attributes(machine.engine, command) | {"title": f"linksweep: {type(machine).__name__}"}
 
 
 def _bare(cycle: xr.Dataset) -> xr.Dataset:
