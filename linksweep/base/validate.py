@@ -233,7 +233,15 @@ def _angle_problems(path: str, value: Any) -> list[str]:
         return [f"{path} has theta2 = {quote(angles.tolist())}: its coordinate must hold finite angles in degrees"]
     different, counts = np.unique(angles, return_counts=True)
     twice = different[counts > 1]
-    return [f"{path} has theta2 = {twice[0]:.15g} more than once: give one value for each angle"] if twice.size else []
+    once = [f"{path} has theta2 = {twice[0]:.15g} more than once: give one value for each angle"] if twice.size else []
+    return once + radian_problems(f"{path} has theta2", angles)
+
+
+def radian_problems(start: str, angles: np.ndarray) -> list[str]:
+    """Return a problem of angles that end at half a turn, or at one or two, in radians."""
+    end = float(np.abs(angles).max(initial=0.0))
+    turn = {math.pi: "π", 2.0 * math.pi: "2π", 4.0 * math.pi: "4π"}.get(end)
+    return [f"{start} in radians: it ends at {end:.15g}, which is {turn}; give degrees, 360 a turn"] if turn else []
 
 
 def choice_problems(path: str, value: Any, allowed: Iterable[str]) -> list[str]:

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.base.fields import PairField
-from linksweep.base.validate import Rule, name_problems, quote, refuse
+from linksweep.base.validate import Rule, name_problems, quote, radian_problems, refuse
 from linksweep.chains.between_links import force_name
 from linksweep.chains.rows.pins import Pins
 from linksweep.engine.quantity import unless_jammed
@@ -90,6 +90,7 @@ def part_of(path: str, value: Any, scene: Scene) -> tuple[float, float] | None:
     refuse(pair.problems(path, ends))
     refuse([f"{path} is over designs: must be the same for all"] if any(map(np.ndim, ends)) else [])
     first, last = map(float, ends)
+    refuse(radian_problems(f"{path} is", np.array([first, last])))
     bounds = f"must be a pair (first, last), first less than last by at most {scene.period:g} degrees"
     return_way = f"; from {first:g} on to {last:g} is ({first:g}, {last + scene.period:g})"
     way = return_way if first - scene.period <= last < first else ""

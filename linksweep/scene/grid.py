@@ -12,7 +12,7 @@ from linksweep.base.conversion import all_to_float64
 from linksweep.base.degrees import cos_sin_low_words
 from linksweep.base.memory import require_memory
 from linksweep.base.units import unit_problems
-from linksweep.base.validate import quote, refuse
+from linksweep.base.validate import quote, radian_problems, refuse
 from linksweep.chains.gears import Geared, geared_rows
 from linksweep.engine.run import Grid
 from linksweep.physics.algebra.double_double import two_product, two_sum
@@ -68,6 +68,7 @@ def _angles(values: Any, name: str) -> np.ndarray:
     if not sound.all():
         k = int(np.argmin(sound))
         raise ValueError(f"{name}[{k}] = {angles[k]}: every angle must be a finite number of degrees")
+    refuse(radian_problems(f"{name} is", angles))
     return angles
 
 

@@ -167,6 +167,11 @@ BAD_ANGLES = [
     ([0.0, np.nan], "theta2[1] = nan: every angle must be a finite number of degrees"),
     (np.array([np.inf, 0.0]), "theta2[0] = inf: every angle must be a finite number of degrees"),
     (array(0.0, 1.0, -np.inf), "theta2[2] = -inf: every angle must be a finite number of degrees"),
+    (np.linspace(-np.pi, np.pi, 9), "theta2 is in radians: it ends at 3.14159265358979, which is π; give degrees"),
+    (
+        np.linspace(0.0, 2.0 * np.pi, 361),
+        "theta2 is in radians: it ends at 6.28318530717959, which is 2π; give degrees",
+    ),
 ]
 BAD_COUNTS = [
     (0, "theta2 = 0: a count of angles must be at least 1"),

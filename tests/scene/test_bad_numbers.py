@@ -232,6 +232,8 @@ def test_refused_theta2_coordinates(number):
         ((0.0, 90.0, 90.0, 180.0), "90 more than once: give one value for each angle"),
     ):
         assert refusal(number.change, torque_at(*angles)) == [f"{number.path} has theta2 = {text}"]
+    radians = "has theta2 in radians: it ends at 12.5663706143592, which is 4π; give degrees, 360 a turn"
+    assert refusal(number.change, torque_at(*np.linspace(0.0, 4.0 * np.pi, 9))) == [f"{number.path} {radians}"]
 
 
 @every_number

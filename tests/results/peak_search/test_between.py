@@ -129,6 +129,7 @@ FOUR = ls.MultiCylinder(ls.example("engine"), [0, 540, 180, 360])
         (WAVE, {"between": (60, -60)}, "first less than last by at most 360 degrees; from 60 on to -60 is (60, 300)"),
         (WAVE, {"between": (0, 361)}, "between = (0, 361): must be a pair (first, last), first less than last by at"),
         (WAVE, {"between": 60}, "between = 60: must be a pair (first, last) crank angle in degrees"),
+        (WAVE, {"between": (0, 2 * np.pi)}, "between is in radians: it ends at 6.28318530717959, which is 2π"),
         (WAVE, {"between": (0, np.inf)}, "between[2] = inf degree: must be finite"),
         (WAVE, {"between": (0, xr.DataArray([30.0, 60.0], dims="part"))}, "between is over designs: must be the same"),
         (WAVE, {"between": (0, 60), "theta2": 36}, "between = (0, 60): is of exact peaks, theta2 of samples: give one"),
