@@ -31,6 +31,8 @@ FINEST = 1e-9
 EVEN, PER_DECADE = 3600, 60
 CLOSE = 1e-11
 """Step between samples that tell a sample's rounding errors [degree]."""
+BESIDE = 50
+"""Such samples on either side: the largest of thousands has a rounding error that few samples would show."""
 INTERPOLATIONS = ("periodic cubic", "pchip", "linear", "step")
 
 Array = np.ndarray
@@ -130,9 +132,9 @@ def clear_of_rounding(scene: ls.Scene, exact: xr.Dataset, dense: xr.Dataset) -> 
 
 
 def _rounding(scene: ls.Scene, dense: xr.Dataset, name: str) -> float:
-    """Return the rounding errors of a largest sample: the scatter of five, close together."""
+    """Return the rounding errors of a largest sample: the scatter of many, close together."""
     quantity, angle = name.rsplit("_", 1)[0], float(dense[f"{name}_at"])
-    values = ls.sweep(scene, angle + CLOSE * np.arange(-2.0, 3.0), of=[quantity])[quantity].values
+    values = ls.sweep(scene, angle + CLOSE * np.arange(-BESIDE, BESIDE + 1.0), of=[quantity])[quantity].values
     return float(np.nan_to_num(np.abs(np.diff(values, n=2))).max())
 
 
