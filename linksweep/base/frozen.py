@@ -127,7 +127,7 @@ def cached_copy(copied: Callable[[Owner], Owner]) -> Callable[[Owner], Owner]:
 
 def with_clear_calls(cls: Any) -> Any:
     """Let a frozen dataclass name its parameters where it is called with others, or a field is assigned to."""
-    constructor = cls.__init__
+    constructor, assignment = cls.__init__, cls.__setattr__
 
     @wraps(constructor)
     def init(self: Any, /, *values: Any, **named: Any) -> None:
@@ -138,11 +138,15 @@ def with_clear_calls(cls: Any) -> Any:
                 raise TypeError("\n".join(problems)) from None
             raise
 
-    def refuse_assignment(self: Any, name: str, value: Any) -> None:
-        unchanged = f"{cls.__name__} objects do not change; make a new one, dataclasses.replace(old, {name}=...)"
-        raise FrozenInstanceError(_unknown(cls, name, value) or f"{name} = {quote(value)}: {unchanged}")
+    def assign(self: Any, name: str, value: Any) -> None:
+        try:
+            assignment(self, name, value)
+        except FrozenInstanceError:
+            unchanged = f"{cls.__name__} objects do not change; make a new one, dataclasses.replace(old, {name}=...)"
+            problem = _unknown(cls, name, value) or f"{name} = {quote(value)}: {unchanged}"
+            raise FrozenInstanceError(problem) from None
 
-    cls.__init__, cls.__setattr__ = init, refuse_assignment
+    cls.__init__, cls.__setattr__ = init, assign
     return cls
 
 

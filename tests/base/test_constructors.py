@@ -60,3 +60,12 @@ def test_public_classes_keep_their_signatures_and_copies():
     assert [*inspect.signature(ls.Tube).parameters] == ["outer", "inner"]
     tube = ls.Tube(0.1, 0.05)
     assert pickle.loads(pickle.dumps(tube)) == copy.deepcopy(tube) == tube
+
+
+def test_a_subclass_may_have_attributes_of_its_own():
+    class Pipe(ls.Tube):
+        def __init__(self, outer: float, maker: str) -> None:
+            super().__init__(outer)
+            self.maker = maker
+
+    assert (Pipe(0.1, "Smith").maker, Pipe(0.1, "Smith").outer) == ("Smith", 0.1)
