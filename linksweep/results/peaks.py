@@ -72,9 +72,9 @@ def peaks(
     Raises
     ------
     ValueError
-        If a name is unknown, an angle is no finite number, `theta` is passed for a machine with a crank or `theta2`
-        for a car in a loop, `between` is no part of the cycle or stands beside samples or several cylinders, or exact
-        peaks are to be superposed.
+        If a name is unknown, an angle is no finite number, angles end at π, 2π or 4π (radians), `theta` is passed for a
+        machine with a crank or `theta2` for a car in a loop, `between` is no part of the cycle or stands beside samples
+        or several cylinders, or exact peaks are to be superposed.
 
     Notes
     -----

@@ -87,8 +87,8 @@ def sweep(
     Raises
     ------
     ValueError
-        If a name is unknown, an angle is no finite number, `theta` is passed for a machine with a crank or `theta2`
-        for a car in a loop, or the `error_bound` of superposed sums is requested.
+        If a name is unknown, an angle is no finite number, angles end at π, 2π or 4π (radians), `theta` is passed for a
+        machine with a crank or `theta2` for a car in a loop, or the `error_bound` of superposed sums is requested.
 
     Notes
     -----

@@ -65,7 +65,8 @@ def system(
     Raises
     ------
     ValueError
-        If the scene is no Scene, an angle is no finite number, or the form is unknown.
+        If the scene is no Scene, an angle is no finite number, angles end at π, 2π or 4π (radians), or the form is
+        unknown.
 
     Notes
     -----
