@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from linksweep.base.on_demand import modules_of_names, public_name, when_imported
+from linksweep.base.public.on_demand import modules_of_names, public_name, when_imported
 from linksweep.base.version import installed_version
 
 _MODULES = modules_of_names(__file__)

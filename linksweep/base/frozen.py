@@ -1,5 +1,5 @@
 """Frozen dataclasses: how a constructor stores normalised values, how a copy is made, a cache beside an object, and
-what is said where a constructor is called with other parameters, or a field is assigned to.
+what is said where a field is assigned to.
 
 Only these functions write to a frozen object, and only before it is returned to anyone.
 """
@@ -10,13 +10,13 @@ import functools
 import operator
 import sys
 import weakref
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable
 from dataclasses import FrozenInstanceError, fields, replace
 from functools import wraps
-from inspect import Parameter, signature
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from linksweep.base.fields import ANYTHING, declared, has_fields, is_plain
+from linksweep.base.fields import declared, has_fields, is_plain
+from linksweep.base.public.clear_calls import naming_parameters, unknown_parameter
 from linksweep.base.validate import is_array, quote
 
 if TYPE_CHECKING or sys.version_info >= (3, 12):
@@ -127,62 +127,18 @@ def cached_copy(copied: Callable[[Owner], Owner]) -> Callable[[Owner], Owner]:
 
 def with_clear_calls(cls: Any) -> Any:
     """Let a frozen dataclass name its parameters where it is called with others, or a field is assigned to."""
-    constructor, assignment = cls.__init__, cls.__setattr__
-
-    @wraps(constructor)
-    def init(self: Any, /, *values: Any, **named: Any) -> None:
-        try:
-            constructor(self, *values, **named)
-        except TypeError:
-            if problems := [*_call_problems(cls, len(values), named)]:
-                raise TypeError("\n".join(problems)) from None
-            raise
+    assignment = cls.__setattr__
 
     def assign(self: Any, name: str, value: Any) -> None:
         try:
             assignment(self, name, value)
         except FrozenInstanceError:
             unchanged = f"{cls.__name__} objects do not change; make a new one, dataclasses.replace(old, {name}=...)"
-            problem = _unknown(cls, name, value) or f"{name} = {quote(value)}: {unchanged}"
+            problem = unknown_parameter(cls, name, value) or f"{name} = {quote(value)}: {unchanged}"
             raise FrozenInstanceError(problem) from None
 
-    cls.__init__, cls.__setattr__ = init, assign
+    cls.__init__, cls.__setattr__ = naming_parameters(cls.__init__, called=cls, unnamed=1), assign
     return cls
-
-
-def _call_problems(cls: Any, count: int, named: Mapping[str, Any]) -> Iterator[str]:
-    """Yield a line for each parameter that is unknown, there twice or missing in a call with `count` unnamed values."""
-    parameters = _parameters(cls)
-    in_order = [name for name, each in parameters.items() if each.kind is Parameter.POSITIONAL_OR_KEYWORD]
-    if count > len(in_order):
-        yield f"{count} values without a name: {cls.__name__} takes at most {len(in_order)}, {', '.join(in_order)}"
-    for name, value in named.items():
-        if name in in_order[:count]:
-            yield f"{name} = {quote(value)}: stands twice, in its place and by its name; leave one out"
-        elif problem := _unknown(cls, name, value):
-            yield problem
-    kinds = {name: kind for name, kind, _ in declared(cls)}
-    needed = [
-        name for name, each in parameters.items() if each.default is each.empty and each.kind is not each.VAR_KEYWORD
-    ]
-    for name in needed:
-        if name not in {*in_order[:count], *named}:
-            known = f"{cls.__name__} needs {', '.join(needed)}"
-            yield f"{name}: missing; {known if kinds[name] is ANYTHING else f'must be {kinds[name].requirement}'}"
-
-
-def _unknown(cls: Any, name: str, value: Any) -> str:
-    """Return the problem of a name that is no parameter; empty for one that is."""
-    known = _parameters(cls)
-    if name in known or any(each.kind is Parameter.VAR_KEYWORD for each in known.values()):
-        return ""
-    return f"{name} = {quote(value)}: {cls.__name__} has no such parameter; it has {', '.join(known)}"
-
-
-def _parameters(cls: Any) -> dict[str, Parameter]:
-    """Return the parameters of a constructor by name."""
-    _, *parameters = signature(cls.__init__).parameters.values()
-    return {each.name: each for each in parameters}
 
 
 def _same(old: Any, new: Any) -> bool:

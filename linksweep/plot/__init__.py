@@ -9,7 +9,7 @@ dashes, so that a force on top of another is seen, in grey too.
 
 from typing import Any
 
-from linksweep.base.on_demand import modules_of_names, public_name
+from linksweep.base.public.on_demand import modules_of_names, public_name
 
 _MODULES = modules_of_names(__file__)
 __all__ = [*_MODULES]

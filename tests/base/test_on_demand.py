@@ -6,7 +6,7 @@ from importlib.util import find_spec
 
 import pytest
 
-from linksweep.base.on_demand import when_imported
+from linksweep.base.public.on_demand import when_imported
 
 USE = "xarray.Dataset(attrs={'scene': ''}).linksweep.to_csv"
 ORDERS = {

@@ -1,4 +1,4 @@
-"""Constructors name their parameters where they are called with others; objects say how a new one is made."""
+"""Functions and constructors name their parameters where a call does not fit; objects say how a new one is made."""
 
 import copy
 import inspect
@@ -26,6 +26,14 @@ CALLS = {
     "outside = 0.2: Tube has no such parameter; it has outer, inner\n"
     'outer: missing; must be a number in m, or a text such as "8 cm"': lambda: ls.Tube(outside=0.2),
     "diameter = 0.2: Tube has no such parameter; it has outer, inner": lambda: replace(ls.Tube(0.1), diameter=0.2),
+    "scene: missing; peaks needs scene": ls.peaks,
+    "path: missing; save needs ds, path": lambda: ls.save(None),
+    "angle = 90: sweep has no such parameter; it has scene, angles, theta2, theta, of, outputs, solver, threads": (
+        lambda: ls.sweep(ls.example("press"), angle=90)
+    ),
+    "3 values without a name: sweep takes at most 2, scene, angles; "
+    "the others have names, theta2, theta, of, outputs, solver, threads": lambda: ls.sweep(None, 360, ["F32"]),
+    "colour = 'red': forces has no such parameter; it has ds, of, ax": lambda: ls.plot.forces(None, colour="red"),
 }
 
 
@@ -43,6 +51,12 @@ def test_a_type_error_within_a_call_that_fits_is_passed_on(monkeypatch):
     monkeypatch.setattr(ls.Bar, "__post_init__", fails)
     with pytest.raises(TypeError, match=r"^of its own$"):
         ls.Bar(**BAR)
+
+
+def test_public_functions_keep_their_signatures_and_are_found_by_pickle():
+    assert [*inspect.signature(ls.peaks).parameters][:2] == ["scene", "of"]
+    for function in (ls.peaks, ls.plot.forces):
+        assert pickle.loads(pickle.dumps(function)) is function
 
 
 def test_an_assignment_names_the_way_to_a_new_object_or_the_fields():

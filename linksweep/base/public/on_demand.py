@@ -10,7 +10,7 @@ from importlib import import_module
 from importlib.abc import Loader, MetaPathFinder
 from importlib.machinery import ModuleSpec
 from pathlib import Path
-from types import ModuleType
+from types import FunctionType, ModuleType
 from typing import Any
 
 Action = Callable[[ModuleType], None]
@@ -31,11 +31,23 @@ def public_name(package: str, name: str, modules: Mapping[str, str]) -> Any:
     if module == package:
         return import_module(f"{package}.{name}")
     item = getattr(import_module(module), name)
-    if not (isinstance(item, type) and is_dataclass(item)):
-        return item
-    from linksweep.base.frozen import with_clear_calls
+    if isinstance(item, FunctionType):
+        return _of_package(package, item)
+    if isinstance(item, type) and is_dataclass(item):
+        from linksweep.base.frozen import with_clear_calls
 
-    return with_clear_calls(item)
+        return with_clear_calls(item)
+    return item
+
+
+def _of_package(package: str, function: FunctionType) -> Any:
+    """Return a function that names its parameters where it is called with others, as one of the package, where pickle
+    finds it."""
+    from linksweep.base.public.clear_calls import naming_parameters
+
+    called = naming_parameters(function, called=function)
+    called.__module__ = package
+    return called
 
 
 def when_imported(name: str) -> Callable[[Action], Action]:
