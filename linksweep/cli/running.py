@@ -72,14 +72,19 @@ def _without_documentation() -> None:
 
 
 def write_figure(figure: Figure, path: Path) -> None:
-    """Write a figure to a file, whole or not at all."""
+    """Write a figure to a file, whole or not at all, and close it."""
+    from matplotlib import pyplot
+
     from linksweep.files.atomic import ending_of, whole, write_from_memory
 
-    with whole(path) as temporary:
-        if ending_of(path, PICTURES) == ".png":
-            _write_png(figure, temporary)
-        else:
-            write_from_memory(temporary, partial(figure.savefig, format=ending_of(path, PICTURES)[1:], dpi=150))
+    try:
+        with whole(path) as temporary:
+            if ending_of(path, PICTURES) == ".png":
+                _write_png(figure, temporary)
+            else:
+                write_from_memory(temporary, partial(figure.savefig, format=ending_of(path, PICTURES)[1:], dpi=150))
+    finally:
+        pyplot.close(figure)
 
 
 def _write_png(figure: Figure, path: Path) -> None:

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from matplotlib import pyplot
 
 import linksweep as ls
 from linksweep.cli.main import main
@@ -112,6 +113,7 @@ def test_pictures_of_other_kinds(press, ending, begins, capsys):
     picture = "cycle" + ending
     assert main(["sweep", press, "-o", "cycle.nc", "--plot", picture, "--theta2", "24"]) == 0
     assert Path(picture).read_bytes().startswith(begins)
+    assert pyplot.get_fignums() == []
 
 
 def test_sweep_writes_only_the_requested_variables(press, capsys):
@@ -304,6 +306,7 @@ def test_a_picture_that_fails_leaves_no_file(press, monkeypatch, capsys):
     assert main(["sweep", press, "-o", "cycle.nc", "--plot", "cycle.png"]) == 2
     assert "No space left on device" in capsys.readouterr().err
     assert Path("cycle.png").read_bytes() == b"old"
+    assert pyplot.get_fignums() == []
     assert sorted(os.listdir()) == ["cycle.nc", "cycle.png", "press.toml"]
 
 
