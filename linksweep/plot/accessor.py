@@ -13,6 +13,7 @@ from inspect import Parameter, cleandoc, signature
 from typing import TYPE_CHECKING, Any
 
 from linksweep import plot
+from linksweep.base.public.clear_calls import naming_parameters
 from linksweep.files import spreadsheet, table
 from linksweep.files.netcdf import scene_of
 from linksweep.scene.scene import Scene
@@ -119,7 +120,7 @@ def _method(draw: Callable[..., Any]) -> Callable[..., Any]:
     text = cleandoc(draw.__doc__ or "").partition("\n\nExamples\n")[0] + "\n"
     method.__signature__ = plain.replace(parameters=[itself, *[*plain.parameters.values()][1:]])  # type: ignore[attr-defined]
     method.__doc__ = NO_PARAMETERS.sub("", FIRST_PARAMETER.sub("", text))
-    return method
+    return naming_parameters(method, called=method, unnamed=1)
 
 
 for _draw in (getattr(plot, name) for name in plot.__all__):

@@ -8,6 +8,7 @@ from dataclasses import FrozenInstanceError, replace
 import pytest
 
 import linksweep as ls
+from linksweep.base.public.clear_calls import _call_problems
 
 BAR = {"length": 0.1, "width": 0.02, "thickness": 0.02, "density": 7850.0}
 FIELDS = "crank, coupler, rocker, ground, branch, ground_angle"
@@ -23,17 +24,22 @@ CALLS = {
     "ground: missing; must be a dict of pins (x, y) by name": lambda: ls.Linkage("crank A-B, rod B-C, rocker D-C"),
     "outer = 0.2: stands twice, in its place and by its name; leave one out": lambda: ls.Tube(0.1, outer=0.2),
     "3 values without a name: Tube takes at most 2, outer, inner": lambda: ls.Tube(0.1, 0.05, 0.02),
-    "outside = 0.2: Tube has no such parameter; it has outer, inner\n"
+    'outside = 0.2: Tube has no such parameter; did you mean "outer"?\n'
     'outer: missing; must be a number in m, or a text such as "8 cm"': lambda: ls.Tube(outside=0.2),
     "diameter = 0.2: Tube has no such parameter; it has outer, inner": lambda: replace(ls.Tube(0.1), diameter=0.2),
     "scene: missing; peaks needs scene": ls.peaks,
     "path: missing; save needs ds, path": lambda: ls.save(None),
-    "angle = 90: sweep has no such parameter; it has scene, angles, theta2, theta, of, outputs, solver, threads": (
-        lambda: ls.sweep(ls.example("press"), angle=90)
-    ),
+    "between = (0, 90): sweep has no such parameter; it has "
+    "scene, angles, theta2, theta, of, outputs, solver, threads": lambda: ls.sweep(None, between=(0, 90)),
+    "off = 'F32': peaks has no such parameter; did you mean \"of\"?": lambda: ls.peaks(None, off="F32"),
+    "after, of: missing; compare needs before, after, of": lambda: ls.compare(None),
+    "3 values without a name: scene_at takes at most 2, ds, where": lambda: ls.scene_at(None, {}, {}),
     "3 values without a name: sweep takes at most 2, scene, angles; "
     "the others have names, theta2, theta, of, outputs, solver, threads": lambda: ls.sweep(None, 360, ["F32"]),
     "colour = 'red': forces has no such parameter; it has ds, of, ax": lambda: ls.plot.forces(None, colour="red"),
+    "3 values without a name: forces takes at most 1, of; the others have names, ax": (
+        lambda: ls.sweep(ls.example("press"), 12).linksweep.forces(1, 2, 3)
+    ),
 }
 
 
@@ -42,6 +48,10 @@ def test_a_call_that_does_not_fit_names_what_is_unknown_and_what_is_missing(mess
     with pytest.raises(TypeError) as refused:
         call()
     assert str(refused.value) == message
+
+
+def test_calls_that_fit_have_no_problems():
+    assert [*_call_problems(ls.scene_at, 1, {"design": 3})] == [*_call_problems(ls.sweep, 2, {"of": "F32"})] == []
 
 
 def test_a_type_error_within_a_call_that_fits_is_passed_on(monkeypatch):

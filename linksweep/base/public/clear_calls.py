@@ -8,8 +8,8 @@ from functools import wraps
 from inspect import Parameter, signature
 from typing import Any
 
-from linksweep.base.fields import ANYTHING, declared
-from linksweep.base.validate import quote
+from linksweep.base.fields import ANYTHING, FieldKind, declared
+from linksweep.base.validate import did_you_mean, quote
 
 
 def naming_parameters(function: Callable[..., Any], called: Any, unnamed: int = 0) -> Callable[..., Any]:
@@ -32,16 +32,17 @@ def naming_parameters(function: Callable[..., Any], called: Any, unnamed: int = 
 
 def unknown_parameter(called: Any, name: str, value: Any) -> str:
     """Return the problem of a name that is no parameter of what is called; empty for one that is."""
-    known = signature(called).parameters
+    known = _parameters(called)
     if name in known or any(each.kind is Parameter.VAR_KEYWORD for each in known.values()):
         return ""
-    return f"{name} = {quote(value)}: {called.__name__} has no such parameter; it has {', '.join(known)}"
+    advice = did_you_mean(name, known) or f"; it has {', '.join(known)}"
+    return f"{name} = {quote(value)}: {called.__name__} has no such parameter{advice}"
 
 
 def _call_problems(called: Any, count: int, named: Mapping[str, Any]) -> Iterator[str]:
-    """Yield a line for each parameter that is unknown, there twice or missing in a call with `count` unnamed values."""
-    parameters = signature(called).parameters
-    in_order = [name for name, each in parameters.items() if each.kind is Parameter.POSITIONAL_OR_KEYWORD]
+    """Yield a line for parameters that are unknown, there twice or missing in a call with `count` unnamed values."""
+    parameters = _parameters(called)
+    in_order = [name for name, each in parameters.items() if each.kind in IN_ORDER]
     if count > len(in_order) and not any(each.kind is Parameter.VAR_POSITIONAL for each in parameters.values()):
         others = ", ".join(name for name, each in parameters.items() if each.kind is Parameter.KEYWORD_ONLY)
         most = f"{called.__name__} takes at most {len(in_order)}, {', '.join(in_order)}"
@@ -51,14 +52,24 @@ def _call_problems(called: Any, count: int, named: Mapping[str, Any]) -> Iterato
             yield f"{name} = {quote(value)}: stands twice, in its place and by its name; leave one out"
         elif problem := unknown_parameter(called, name, value):
             yield problem
-    kinds = {name: kind for name, kind, _ in declared(called)} if is_dataclass(called) else {}
     needed = [name for name, each in parameters.items() if each.default is each.empty and each.kind not in OF_MANY]
-    for name in needed:
-        if name not in {*in_order[:count], *named}:
-            kind = kinds.get(name, ANYTHING)
-            known = f"{called.__name__} needs {', '.join(needed)}"
-            yield f"{name}: missing; {known if kind is ANYTHING else f'must be {kind.requirement}'}"
+    missing = [name for name in needed if name not in {*in_order[:count], *named}]
+    kinds = {name: kind for name, kind, _ in declared(called)} if is_dataclass(called) else {}
+    yield from (f"{name}: missing; must be {kinds[name].requirement}" for name in missing if _is_declared(name, kinds))
+    if undeclared := [name for name in missing if not _is_declared(name, kinds)]:
+        yield f"{', '.join(undeclared)}: missing; {called.__name__} needs {', '.join(needed)}"
 
 
+def _is_declared(name: str, kinds: Mapping[str, FieldKind]) -> bool:
+    return kinds.get(name, ANYTHING) is not ANYTHING
+
+
+def _parameters(called: Any) -> dict[str, Parameter]:
+    """Return the parameters that a user states: of a method, all but the object."""
+    return {name: each for name, each in signature(called).parameters.items() if name != "self"}
+
+
+IN_ORDER = {Parameter.POSITIONAL_ONLY, Parameter.POSITIONAL_OR_KEYWORD}
+"""Kinds of parameters whose values need no name."""
 OF_MANY = {Parameter.VAR_POSITIONAL, Parameter.VAR_KEYWORD}
 """Kinds of parameters that take any number of values, also none."""
