@@ -61,7 +61,9 @@ class Family(NamedTuple):
 
 
 def rows(size: Size) -> list[Row]:
-    return [_row(name, search(family, round(family.share * size.machines))) for name, family in FAMILIES.items()]
+    return [
+        _row(name, search(family, max(round(family.share * size.machines), 1))) for name, family in FAMILIES.items()
+    ]
 
 
 def _row(name: str, result: Missed) -> Row:
