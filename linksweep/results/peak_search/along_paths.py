@@ -18,7 +18,7 @@ from linksweep.engine.peaks.summits import might_reach
 from linksweep.engine.run import Field
 from linksweep.results.peak_search.groups import Group
 from linksweep.results.peak_search.paths import ASIDE, QUARTER, Part, Paths, moved_aside, reversals
-from linksweep.results.peak_search.singular.poles import poles
+from linksweep.results.peak_search.singular.poles import Candidates, poles
 from linksweep.results.peak_search.singular.rounding_errors import CLEAR, Singular
 from linksweep.scene.pairs import Array, flat_index, in_period, some_of
 
@@ -143,9 +143,12 @@ def follow(group: Any, peaks: dict[str, SignalPeak], all_paths: tuple[PathsOf, .
             _raise(peak, index, *(numbers[:, k] for numbers in best))
 
 
-def raise_to_poles(group: Any, peaks: dict[str, SignalPeak], part: Part | None = None) -> None:
-    """Make the peaks infinite at the poles of their signals, those inside a part of the period if there is one."""
-    row, angle, infinite = poles(group, tuple(peaks))
+def raise_to_poles(
+    group: Any, peaks: dict[str, SignalPeak], part: Part | None = None, candidates: Candidates | None = None
+) -> None:
+    """Make the peaks infinite at the poles of their signals, or those among candidates, inside a part of the period if
+    there is one."""
+    row, angle, infinite = poles(group, tuple(peaks), candidates)
     inside = _inside(angle, part, group.scene.period)
     row, angle, infinite = row[inside], angle[inside], infinite[inside]
     places, angle = group.some(row).places, angle_in_period(angle, group.scene.period)

@@ -34,12 +34,15 @@ CLOSEST_TO_TOGGLE = 1e-5, 1e-4
 """Distances from a change point of the closest samples [degree].
 
 Nearer ones have the status of a toggle; two distances, as quantities may grow by different powers near and far."""
-BESIDE = np.array([1.0, 2.0, 4.0, 8.0])
-"""Distances of the samples beside a possible pole, as multiples of the closest one."""
+BESIDE = np.outer([1.0, 2.0, 4.0, 8.0], [1.0, 1.01, 1.02])
+"""Distances of the samples beside a possible pole, three close together each time, as multiples of the closest one."""
 LEAST_GROWTH = 1.5
 """Least growth when the distance to a pole halves; a quantity that varies as 1/distance**n grows 2**n times."""
 EVENNESS = 1.1
 """Factor by which the growths over two halvings differ at most: of a power they are equal."""
+SCATTER = 0.01
+"""Least second difference of three samples close together, relative to them, where they consist of rounding errors:
+these grow evenly, too, where each is one digit of a force that grows as a power."""
 TOGGLE = 2.0
 """Status of a sample in a toggle."""
 KINDS = {"dead_centre": "dead_centre", "wedge": "jam"}
@@ -93,21 +96,22 @@ def _poles_in_closed_form(scene: Scene) -> Iterator[tuple[tuple[str, ...], Array
             yield dims, angles
 
 
-def poles(group: Group, signals: tuple[str, ...]) -> tuple[Array, Array, Array]:
-    """Return the possible poles of these designs, where they can be assembled, and the signals that are inf there.
+def poles(group: Group, signals: tuple[str, ...], candidates: Candidates | None = None) -> tuple[Array, Array, Array]:
+    """Return the possible poles of these designs, or these candidates, where they can be assembled, and the signals
+    that are inf there.
 
     Three arrays: of each pole the row of its design in the group and its angle [degree], and whether each signal is inf
     there (pole, signal).
     """
-    row, angle, step = pole_candidates(group, signals)
+    row, angle, step = pole_candidates(group, signals) if candidates is None else candidates
     if not len(row):
         return row, angle, np.zeros((0, len(signals)), dtype=bool)
-    side = np.array([-1.0, 1.0])
-    angles = angle[:, None, None] + step[:, None, None] * side[:, None] * BESIDE
-    rows = np.repeat(row, angles[:1].size)
+    beside = np.multiply.outer(np.multiply.outer(step, [-1.0, 1.0]), BESIDE)
+    angles, rows = angle[:, None, None, None] + beside, np.repeat(row, beside[:1].size)
     with np.errstate(invalid="ignore"):
         values = group.values(signals, rows, angles.ravel()).reshape(len(signals), *angles.shape)
-        infinite = _grows_as_a_power(np.abs(values)) & (values[..., 0] > 0.0)
+        smooth = np.abs(np.diff(values, n=2)[..., 0]) < SCATTER * np.abs(values[..., 0])
+        infinite = _grows_as_a_power(np.abs(values[..., 0])) & (values[..., 0, 0] > 0.0) & smooth.all(axis=-1)
     return row, angle, np.any(infinite, axis=-1).T
 
 

@@ -17,16 +17,24 @@ from linksweep.results.peak_search.arcs import arc_ends_of_whole_period
 from linksweep.results.peak_search.between import PARTLY, driven_elsewhere
 from linksweep.results.peak_search.groups import Group
 from linksweep.results.peak_search.paths import Part
-from linksweep.results.peak_search.singular.poles import pole_candidates
+from linksweep.results.peak_search.singular.poles import Candidates, pole_candidates
 from linksweep.scene.pairs import Array, by_row
 
-CLEAR = 0.01
-"""Distance from a singular place [degree] within which rounding errors may be peaks."""
+CLEAR, FARTHEST = 0.01, 10.24
+"""Distances from a singular place [degree] within which rounding errors may be peaks: of most signals, and of those
+that are the difference of forces which grow as the fourth power."""
 CLOSE_BY, FARTHER = 1e-5, 2.0
 """Distance from it [degree] beyond which a peak may be one of the signal after all, and the factor to the next one
 where the signal is not smooth there."""
-ON_BOTH_SIDES = np.outer([-CLEAR, CLEAR], [1.0, 2.0, 3.0])
-"""Samples (side, step) beside a singular place [degree], whose parabolas tell how high a quantity may reach there."""
+SIDES = np.array([-1.0, 1.0])
+OF_PARABOLA = np.outer(SIDES, [1.0, 2.0, 3.0])
+"""Samples (side, step) beside a singular place, clear of rounding errors, whose parabolas tell how high a quantity may
+reach there."""
+DOUBLED = CLEAR * 2.0 ** np.arange(round(math.log2(FARTHEST / CLEAR)) + 1)
+AT_DOUBLED = np.multiply.outer(SIDES, np.multiply.outer(DOUBLED, 1.0 + 0.003 * np.arange(5.0)))
+"""Distances from a place [degree], and five samples at each (side, distance, step)."""
+ROUGH = 1e-6
+"""Least fourth difference of these five, relative to them, that tells of rounding errors: of 1/distance⁴ it is 7e-8."""
 SPOILT = 1e-9
 """Least error, relative to a quantity, that tells a peak of rounding errors from one of the quantity."""
 RESOLVED = 5e-6
@@ -51,10 +59,17 @@ class Singular(NamedTuple):
     angle: Array
     ends_arc: Array
 
-    def angles_of(self, designs: Array, chosen: Array) -> Array:
-        """Return the chosen angles of some designs (design, nth) [degree], NaN for none."""
-        own = chosen & np.isin(self.row, designs)
-        return by_row(np.searchsorted(designs, self.row[own]), self.angle[own], len(designs))
+    def of_designs(self, designs: Array, clear: Array) -> tuple[Array, Array]:
+        """Return the angles of some designs (design, nth) to keep clear of, and by which distances [degree], NaN for
+        none; `clear` has the distance of each place, 0 for none."""
+        own = (clear > 0.0) & np.isin(self.row, designs)
+        row = np.searchsorted(designs, self.row[own])
+        return by_row(row, self.angle[own], len(designs)), by_row(row, clear[own], len(designs))
+
+    def as_poles(self, clear: Array) -> Candidates:
+        """Return places to keep clear of as possible poles, which show at the distances where rounding errors end."""
+        own = clear > 0.0
+        return Candidates(self.row[own], self.angle[own], clear[own])
 
 
 def singular_places(group: Group, signals: tuple[str, ...]) -> Singular:
@@ -71,8 +86,9 @@ def singular_places(group: Group, signals: tuple[str, ...]) -> Singular:
 
 
 def spoilt_peaks(group: Group, places: Singular, peaks: dict[str, tuple[Array, ...]], among: Array) -> Array:
-    """Return which signals have peaks that consist of rounding errors, and close to which of these places (signal,
-    place). `peaks` are the values and the angles [degree] of each signal's peaks, those `among` (signal, design) new.
+    """Return the distances [degree] from these places (signal, place) by which to search clear of them for peaks that
+    consist of rounding errors now, 0 for none. `peaks` are the values and the angles [degree] of each signal's peaks,
+    those `among` (signal, design) new.
 
     Such a peak exceeds the parabola through three samples on one side, and the signal scatters there. At the end of an
     arc it may be infinite, too.
@@ -92,20 +108,30 @@ def spoilt_peaks(group: Group, places: Singular, peaks: dict[str, tuple[Array, .
 
     suspect = among[:, places.row] & (np.abs(away) < CLEAR) & (np.isfinite(value) | places.ends_arc & (value == np.inf))
     signal, place = np.nonzero(suspect)
+    clear = _where_smooth(values_beside(signal, place, np.tile(AT_DOUBLED, (len(place), 1, 1, 1))))
     with np.errstate(invalid="ignore"):
-        reached = _reached(values_beside(signal, place, np.tile(ON_BOTH_SIDES, (len(place), 1, 1))))
+        reached = _reached(values_beside(signal, place, np.multiply.outer(clear, OF_PARABOLA)))
         high = value[signal, place] > reached
-    signal, place, reached = signal[high], place[high], reached[high]
+    signal, place, clear, reached = signal[high], place[high], clear[high], reached[high]
     excess, distance = value[signal, place] - reached, np.abs(away[signal, place])
     least = np.spacing(np.maximum(places.angle[place], 1.0))
     nearest = np.where(distance > RESOLVED, 0.25 * distance, least)
     farthest = np.maximum(distance, 4.0 * RESOLVED)  # beyond a peak there may be others
     infinite = excess == np.inf
-    nearest[infinite], farthest[infinite] = NEAREST, CLEAR
+    nearest[infinite], farthest[infinite] = NEAREST, clear[infinite]
     beside = _five_at_each(away[signal, place], nearest, farthest, least)
-    spoilt = np.zeros(suspect.shape, dtype=bool)
-    spoilt[signal, place] = _scatters(values_beside(signal, place, beside), reached, excess)
+    spoilt = np.zeros(suspect.shape)
+    spoilt[signal, place] = np.where(_scatters(values_beside(signal, place, beside), reached, excess), clear, 0.0)
     return spoilt
+
+
+def _where_smooth(sampled: Array) -> Array:
+    """Return the least of the doubled distances [degree] at which, and at the next one, samples (each, side, distance,
+    step) do not scatter."""
+    with np.errstate(invalid="ignore"):
+        rough = np.abs(np.diff(sampled, n=4))[..., 0] > ROUGH * np.abs(sampled).max(axis=-1)
+    smooth = ~(rough[..., :-1] | rough[..., 1:]).any(axis=1)
+    return DOUBLED[np.where(smooth.any(axis=1), smooth.argmax(axis=1), -1)]
 
 
 def _reached(beside: Array) -> Array:

@@ -21,7 +21,6 @@ from linksweep.results.peak_search.arcs import arcs_within
 from linksweep.results.peak_search.groups import Group
 from linksweep.results.peak_search.paths import Part
 from linksweep.results.peak_search.singular.rounding_errors import (
-    CLEAR,
     CLOSE_BY,
     FARTHER,
     are_smooth,
@@ -35,26 +34,25 @@ from linksweep.scene.pairs import Array
 def clear_of_rounding_errors(group: Group, peaks: dict[str, SignalPeak], part: Part | None) -> None:
     """Replace peaks of rounding errors beside singular places by those clear of these, or by limits there."""
     signals, places = tuple(peaks), singular_places(group, tuple(peaks))
-    left_out = np.zeros((len(signals), len(places.row)), dtype=bool)
+    clear = np.zeros((len(signals), len(places.row)))
     among = np.ones((len(signals), len(group.designs)), dtype=bool)
     while among.any():  # each time clear of more places
         known = {signal: numbers_of(peak, group)[:2] for signal, peak in peaks.items()}
-        spoilt = spoilt_peaks(group, places, known, among) & ~left_out
-        left_out |= spoilt
+        spoilt = np.where(clear > 0.0, 0.0, spoilt_peaks(group, places, known, among))
+        clear += spoilt
         among[...] = False
         for k in np.flatnonzero(spoilt.any(axis=1)):
-            designs = np.unique(places.row[spoilt[k]])
+            designs = np.unique(places.row[spoilt[k] > 0.0])
             among[k, designs] = True
             own, peak = group.some(designs), {signals[k]: peaks[signals[k]]}
-            angles = places.angles_of(designs, left_out[k])
-            _search_clear_of(angles, np.full(angles.shape, CLEAR), own, peak, part)
-    if left_out.any():
+            _search_clear_of(*places.of_designs(designs, clear[k]), own, peak, part)
+    if clear.any():
         raise_to_poles(group, peaks, part)
     raise_to_limits(group, peaks, places, part)
-    for k in np.flatnonzero(left_out.any(axis=1)):
-        designs = np.unique(places.row[left_out[k]])
-        peak = {signals[k]: peaks[signals[k]]}
-        _raise_close_to(places.angles_of(designs, left_out[k]), group.some(designs), peak, part)
+    for k in np.flatnonzero(clear.any(axis=1)):
+        designs, peak = np.unique(places.row[clear[k] > 0.0]), {signals[k]: peaks[signals[k]]}
+        raise_to_poles(group, peak, part, places.as_poles(clear[k]))
+        _raise_close_to(*places.of_designs(designs, clear[k]), group.some(designs), peak, part)
 
 
 def _search_clear_of(
@@ -67,9 +65,9 @@ def _search_clear_of(
     follow(group, peak, tuple(partial(arcs_within, ends) for ends in zip(*parts, strict=True)))
 
 
-def _raise_close_to(angles: Array, group: Group, peak: dict[str, SignalPeak], part: Part | None) -> None:
-    """Raise a signal's peaks to those close to angles (design, nth) [degree] that were left out, where it is smooth:
-    rounding errors reach less far from most of them."""
+def _raise_close_to(angles: Array, clear: Array, group: Group, peak: dict[str, SignalPeak], part: Part | None) -> None:
+    """Raise a signal's peaks to those closer to angles than they were kept clear of them (design, nth) [degree], where
+    it is smooth: rounding errors reach less far from most of them."""
     ((signal, of_signal),) = peak.items()
     distances, left = np.full(angles.shape, CLOSE_BY), np.arange(len(angles))
     while len(left):
@@ -86,4 +84,4 @@ def _raise_close_to(angles: Array, group: Group, peak: dict[str, SignalPeak], pa
         raise_to(of_signal, own.some(smooth), tuple(numbers[smooth] for numbers in (value, at, *others)))
         rough, beside = left[~smooth], (away <= 2.0 * nearest[:, None])[~smooth]
         distances[rough] *= np.where(beside, FARTHER, 1.0)
-        left = rough[np.where(beside, distances[rough], 0.0).max(axis=1) < CLEAR]
+        left = rough[(~beside | (distances[rough] < clear[rough])).all(axis=1)]

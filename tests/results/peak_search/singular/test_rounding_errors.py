@@ -135,6 +135,34 @@ def compare_with_four_bar(scene, four_bar, forces):
         assert peak > float(samples[force]) * (1.0 - 1e-9)
 
 
+def shaper(*loads):
+    """Return a shaper moved by its arm, at two toggles of which the forces at its ram grow as 1/distance⁴."""
+    machine = ls.Linkage(
+        "crank A-B, arm D-E past B, block F on arm, ram F on slide",
+        ground={"A": (0.0, 0.0), "D": (0.2145, 0.1493)},
+        guides={"arm": ls.Guide((0.7768, 0.0), of="arm"), "slide": ls.Guide((-0.1451, 0.9255), 232.0)},
+        branch={"arm": "crossed"},
+        crank=ls.Link(0.936, 0.434, 0.163, 0.1),
+        arm=ls.Link(2.13, 0.335, 0.755, 2.49, 156.0),
+        block=ls.Slider(9.97, 0.688),
+        ram=ls.Slider(2.32, 0.229),
+    )
+    return ls.Scene(machine, -38.6, loads=loads, drive="arm")
+
+
+def test_a_crank_that_carries_nothing_beside_forces_that_grow_as_the_fourth_power():
+    """Their rounding errors exceed 1 N at 0.15 degrees before a toggle, and grow as evenly where each is one digit."""
+    peaks = ls.peaks(shaper(), of=["F12", "F43"])
+    assert float(peaks.F12_peak) == pytest.approx(0.434 * 0.1 * 38.6**2, rel=1e-7)
+    assert float(peaks.F43_peak) == math.inf
+
+
+def test_a_force_that_grows_without_bound_as_shows_clear_of_rounding_errors_alone():
+    """A damper from the block, whose speed grows without bound, pulls at the crank."""
+    peaks = ls.peaks(shaper(ls.Damper(("block", 0.25, 131.0), ("crank", 0.417, 70.0), 21.5)), of=["F12"])
+    assert float(peaks.F12_peak) == math.inf
+
+
 @pytest.mark.parametrize("part", PARTS)
 def test_parts_clear_of_singular_places(part):
     starts, ends = clear_of(SINGULAR, np.full(SINGULAR.shape, 0.01), part, 360.0)
