@@ -11,6 +11,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from linksweep.base.degrees import signed_distance
 from linksweep.results.peak_search.arcs import arc_ends_of_whole_period
@@ -46,9 +47,9 @@ SCATTER = 0.1
 """Least fourth difference of such five that is scatter, relative to how far a peak exceeds what may be reached."""
 ABOUT = np.linspace(-0.2, 0.2, 5)
 """Places about a peak at which five samples each tell whether a signal is smooth, relative to its distance."""
-NEAREST, SMOOTH, GROWN = 1e-9, 0.01, 3.0
+NEAREST, SMOOTH, GROWN, STEADY = 1e-9, 0.01, 3.0, 1.2
 """Infinite peaks: the least of those distances [degree], the scatter up to which samples are smooth, relative to their
-size, and their least growth, coming closer, while they are."""
+size, and their least growth, coming closer, while they are: in all, and over each of the last three distances."""
 
 
 class Singular(NamedTuple):
@@ -156,13 +157,15 @@ def _scatters(sampled: Array, reached: Array, excess: Array) -> Array:
     """Return whether fives of samples (each, kind of step, distance, step) scatter, by steps of every kind, as much as
     peaks exceed what may be reached; infinite ones, only if they have not grown from there while they were smooth."""
     with np.errstate(invalid="ignore"):
-        size, scatter = np.abs(sampled).max(axis=3).min(axis=1), np.abs(np.diff(sampled, n=4))[..., 0].min(axis=1)
+        sizes, scatters = np.abs(sampled).max(axis=3), np.abs(np.diff(sampled, n=4))[..., 0]
+        size, scatter = sizes.min(axis=1), scatters.min(axis=1)
         noisy = np.any(scatter > SCATTER * np.minimum(size, excess[:, None]), axis=1)
-        size, smooth = (
-            of_fives[:, : 2 * DISTANCES].reshape(-1, 2, DISTANCES) for of_fives in (size, scatter < SMOOTH * size)
-        )
+        smooth = scatters[:, 0] < SMOOTH * size  # by the longest steps: samples closer together may have one error
+        size, smooth = (of_fives[:, : 2 * DISTANCES].reshape(-1, 2, DISTANCES) for of_fives in (size, smooth))
         up_to_there = np.logical_and.accumulate(smooth[..., ::-1], axis=2)[..., ::-1]
-        grown = np.where(up_to_there, size, 0.0).max(axis=(1, 2)) > GROWN * np.abs(reached)
+        grows = sliding_window_view(size[..., :-1] > STEADY * size[..., 1:], 3, axis=2).all(axis=-1)
+        steadily = grows & up_to_there[..., : grows.shape[2]]
+        grown = np.where(steadily, size[..., : grows.shape[2]], 0.0).max(axis=(1, 2)) > GROWN * np.abs(reached)
     return noisy & ~(grown & (excess == np.inf))
 
 

@@ -163,6 +163,19 @@ def test_a_force_that_grows_without_bound_as_shows_clear_of_rounding_errors_alon
     assert float(peaks.F12_peak) == math.inf
 
 
+def test_rounding_errors_that_jump_at_the_end_of_an_arc_are_no_growth():
+    """Both ends have limits, from which the crank's pin force falls with the root of the distance; closer than 5e-6
+    degrees its samples jump to twice as much, and rise to 148 N."""
+    designs = any_linkage(AWAY_FROM_TOGGLES["Whitworth, jack drives"], np.random.default_rng(11), 30)
+    scene = ls.scene_at(designs, design=25)
+    end, distance = float(ls.check(scene).arc_end.max()), np.array([1e-4, 1e-3])
+    near, far = ls.sweep(scene, theta2=end - distance, of=["F12"]).F12.values
+    limit = near + (near - far) * math.sqrt(1e-4) / (math.sqrt(1e-3) - math.sqrt(1e-4))
+    peaks = ls.peaks(scene, of=["F12", "F12_bound"])
+    peak, bound = float(peaks.F12_peak), float(peaks.F12_bound)
+    assert near < peak < 1.001 * limit and peak + bound > 0.999 * limit and bound < 0.02 * limit
+
+
 @pytest.mark.parametrize("part", PARTS)
 def test_parts_clear_of_singular_places(part):
     starts, ends = clear_of(SINGULAR, np.full(SINGULAR.shape, 0.01), part, 360.0)
