@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from linksweep.base.fields import has_fields, numbers
 from linksweep.base.validate import quote
 from linksweep.chains.rows.beams import SECTION
 from linksweep.mechanisms import Mechanism
@@ -69,8 +70,34 @@ def dimension_problems(arrays: Arrays, index: str, quantities: Collection[str]) 
         if name_problems := list(_name_problems(dim, index, sharing, arrays, {*quantities, *RESULTS})):
             problems += name_problems
         else:
-            problems += [*_length_problems(dim, sharing), *_label_problems(dim, sharing, arrays)]
+            problems += _length_problems(dim, sharing)
+            problems += [*_storage_problems(dim, sharing)][:1] or _label_problems(dim, sharing, arrays)
     return problems
+
+
+def argument_problems(arrays: Arrays, **arguments: Any) -> list[str]:
+    """Return why arrays in a function's arguments do not fit a scene's, or each other: a line for each whose length or
+    labels along a dim differ. Arguments may be numbers, objects that hold them, and lists or mappings of these."""
+    own = _arrays_in(arguments)
+    every = _by_dim(arrays | own)
+    dims = [dim for dim, sharing in every.items() if own.keys() & sharing.keys()]
+    checks = ([*_length_problems(dim, every[dim]), *_label_problems(dim, every[dim], {})] for dim in dims)
+    return [problem for check in checks for problem in check]
+
+
+def _arrays_in(values: Mapping[str, Any]) -> Arrays:
+    """Return the arrays among values by path, and in the objects, lists and mappings among them."""
+    arrays: Arrays = {}
+    for path, value in values.items():
+        if isinstance(value, xr.DataArray):
+            arrays[path] = value
+        elif isinstance(value, Mapping):
+            arrays |= _arrays_in({f"{path}.{key}": item for key, item in value.items()})
+        elif isinstance(value, tuple | list):
+            arrays |= _arrays_in({f"{path}[{k}]": item for k, item in enumerate(value, 1)})
+        elif has_fields(value):
+            arrays |= _arrays_in({inner: number for inner, number, _ in numbers(value, f"{path}.")})
+    return arrays
 
 
 def length_problems(numbers: Mapping[str, tuple[Any, str]], index: str) -> list[str]:
@@ -124,18 +151,27 @@ def _length_problems(dim: object, sharing: Arrays) -> Iterator[str]:
             )
 
 
+def _storage_problems(dim: object, sharing: Arrays) -> Iterator[str]:
+    """Yield the arrays whose labels along a dim no file can hold."""
+    for path, values in _labels(dim, sharing).items():
+        if problem := label_problem(values):
+            yield f"{path} has along {dim} {problem}; change its labels"
+
+
+def _labels(dim: object, sharing: Arrays) -> dict[str, xr.Variable]:
+    """Return the labels along a dim of those arrays that have some."""
+    return {path: array[dim].variable for path, array in sharing.items() if dim in array.coords}
+
+
 def _label_problems(dim: object, sharing: Arrays, arrays: Arrays) -> Iterator[str]:
-    """Yield the arrays whose labels along a dim no file can hold, or differ from those of others."""
-    labels = {path: array[dim].variable for path, array in sharing.items() if dim in array.coords}
+    """Yield the arrays whose labels along a dim differ from those of others."""
+    labels = _labels(dim, sharing)
     if dim in arrays:  # a parameter over a dimension of its own name: its values are the labels
         expected, others = arrays[str(dim)].variable, f"the values of {dim}"
     elif labels:
         (first, expected), *_ = labels.items()
         others = f"those of {first}"
     for path, values in labels.items():
-        if problem := label_problem(values):
-            yield f"{path} has along {dim} {problem}; change its labels"
-            return
         if values.shape == expected.shape and not values.equals(expected):
             yield f"{path} has labels along {dim} that are not {others}: make them equal, or rename one dimension"
 

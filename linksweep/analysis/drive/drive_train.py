@@ -38,7 +38,7 @@ from linksweep.engine.trace.plan import InputForms, Plan, plan
 from linksweep.results.compute import require
 from linksweep.scene.derivatives.differentiated import MOTION, Differentiated, differentiated
 from linksweep.scene.designs.selection import Block, selected
-from linksweep.scene.dimensions import aligned
+from linksweep.scene.dimensions import aligned, argument_problems
 from linksweep.scene.scene import Scene
 
 RATIO = Rule("dimensionless", above=0.0)
@@ -249,19 +249,23 @@ def lost_part(passed: Array, efficiency: Array) -> Array:
     return np.where(passed > 0.0, 1.0 - efficiency, 1.0 - 1.0 / efficiency)
 
 
-def drive_train(scene: Scene, motor: AnyMotor, ratio: Any, flywheel: Any, efficiency: Any = 1.0) -> DriveTrain:
-    """Return a scene on its motor.
+def drive_train(
+    scene: Scene, motor: AnyMotor, ratio: Any, flywheel: Any, efficiency: Any = 1.0, start: Number = 0.0
+) -> DriveTrain:
+    """Return a scene on its motor, for runs that start at a crank angle.
 
     Raises
     ------
     ValueError
-        For a machine whose crank is not driven, or whose omega2 has no sign; for anything but a motor; and for a ratio,
-        an inertia or an efficiency that is out of bounds.
+        For a machine whose crank is not driven, or whose omega2 has no sign; for anything but a motor; for a ratio, an
+        inertia or an efficiency that is out of bounds; and for arrays of other lengths or labels.
     """
     require(scene, "drives")
     refuse(_problems(scene, motor))
     ratio, flywheel = checked_number("ratio", ratio, RATIO), checked_number("flywheel", flywheel, INERTIA)
     efficiency = checked_number("efficiency", efficiency, EFFICIENCY)
+    own = {"motor": motor, "ratio": ratio, "flywheel": flywheel, "efficiency": efficiency, "start": start}
+    refuse(argument_problems(scene.arrays, **own))  # from here on they are arrays without labels
     direction = 1.0 if np.all(np.asarray(scene.at(scene.grid(1)).omega2) > 0.0) else -1.0
     designs = sum(0.0 * number for _, number, _ in numbers(motor) if is_array(number))
     designs = designs + 0.0 * flywheel + 0.0 * (efficiency - 1.0)

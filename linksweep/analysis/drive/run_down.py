@@ -5,8 +5,6 @@ Equations: `linksweep.analysis.drive.motion_in_time`.
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import xarray as xr
 
@@ -87,7 +85,8 @@ def run_down(
     Raises
     ------
     ValueError
-        If the drive is no torque on the crank, omega2 is 0 or changes its sign, or a number is out of bounds.
+        If the drive is no torque on the crank, omega2 is 0 or changes its sign, a number is out of bounds, or arrays
+        over one dim differ in length or labels.
 
     Notes
     -----
@@ -109,8 +108,7 @@ def run_down(
     scene, until = in_memory(scene), one_part(until, UNTIL)
     refuse([f"until = {quote(until)}: must be less than 1"] if until >= 1.0 else [])
     start, turns, names = checked(scene, start, turns, of)
-    checked_scene = replace(scene, alpha2=0.0 * start)  # labels of start must be those of omega2
-    train = drive_train(checked_scene, NO_MOTOR if motor is None else motor, ratio, flywheel, efficiency)
+    train = drive_train(scene, NO_MOTOR if motor is None else motor, ratio, flywheel, efficiency, start)
     omega2 = _speed(scene, start)
     designs = Designs(scene, train, start, omega2)
     speed = designs.flat(omega2)

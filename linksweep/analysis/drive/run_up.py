@@ -93,7 +93,8 @@ def run_up(
     Raises
     ------
     ValueError
-        If the drive is no torque on the crank, omega2 is 0 or changes its sign, or a number is out of bounds.
+        If the drive is no torque on the crank, omega2 is 0 or changes its sign, a number is out of bounds, or arrays
+        over one dim differ in length or labels.
 
     Notes
     -----
@@ -115,7 +116,7 @@ def run_up(
     require(scene, "drives")
     scene, until = in_memory(scene), one_part(until, UNTIL)
     start, turns, names = checked(scene, start, turns, of)
-    designs = Designs(scene, drive_train(scene, motor, ratio, flywheel, efficiency), start)
+    designs = Designs(scene, drive_train(scene, motor, ratio, flywheel, efficiency, start), start)
     usual, top = operating_speed(designs), designs.top_speed
     target = until * np.where(np.isfinite(usual), usual, top)
     run = Run(designs.crank(), np.zeros(designs.count), target, 1.0, turns, top)

@@ -119,7 +119,8 @@ def steady_cycle(
     Raises
     ------
     ValueError
-        If the crank is not driven or stands still, the motor is none, or a number is out of bounds.
+        If the crank is not driven or stands still, the motor is none, a number is out of bounds, or arrays over one dim
+        differ in length or labels.
 
     Notes
     -----

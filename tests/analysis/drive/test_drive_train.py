@@ -5,12 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import xarray as xr
+from refusals import array, refusal
 
 import linksweep as ls
 from linksweep.analysis.drive.drive_train import drive_train
 
 MOTOR = ls.InductionMotor("1500 rpm", 15.0, rated_torque=6.0, rated_speed="1425 rpm", inertia=0.004)
 ANGLES = np.arange(0.0, 720.0, 7.5)
+PRESS = ls.example("press")
+FALLING, RISING = array(3.0, 2.0, 1.0, design=[3, 2, 1]), array(1.0, 2.0, 3.0, design=[1, 2, 3])
 
 
 @pytest.mark.parametrize("name", ["press", "engine", "quick-return", "crank-shaper", "jansen-leg", "geared-five-bar"])
@@ -88,3 +91,32 @@ def test_designs_of_scene_motor_gear_and_flywheel_are_those_one_by_one():
 def test_refused_machines_on_a_motor(words, message):
     with pytest.raises(ValueError, match=message):
         drive_train(**{"scene": ls.example("press"), "motor": MOTOR, "ratio": 5.0, "flywheel": 0.0} | words)
+
+
+@pytest.mark.parametrize(
+    ("run", "line"),
+    [
+        (lambda: ls.run_up(replace(PRESS, omega2=RISING), MOTOR, flywheel=FALLING), "flywheel {} omega2"),
+        (lambda: ls.run_down(replace(PRESS, omega2=RISING), ratio=FALLING), "ratio {} omega2"),
+        (
+            lambda: ls.steady_cycle(replace(PRESS, omega2=RISING), MOTOR, flywheel=FALLING, theta2=8),
+            "flywheel {} omega2",
+        ),
+        (lambda: ls.run_up(PRESS, MOTOR, flywheel=FALLING, start=RISING), "start {} flywheel"),
+        (lambda: ls.run_up(PRESS, MOTOR, ratio=FALLING, efficiency=RISING / 3.0), "efficiency {} ratio"),
+        (lambda: ls.run_up(PRESS, replace(MOTOR, inertia=RISING), ratio=FALLING), "ratio {} motor.inertia"),
+        (
+            lambda: ls.run_up(PRESS, MOTOR, ratio=RISING, start=FALLING.assign_coords(design=[2, 3, 4])),
+            "start {} ratio",
+        ),
+    ],
+)
+def test_labels_of_one_dimension_that_differ_are_refused(run, line):
+    """As a scene's own arrays are: they were taken by place, a flywheel of one design for another."""
+    words = "has labels along design that are not those of"
+    assert refusal(run) == [f"{line.format(words)}: make them equal, or rename one dimension"]
+
+
+def test_lengths_of_one_dimension_that_differ_are_refused():
+    (line,) = refusal(ls.run_up, replace(PRESS, omega2=RISING), MOTOR, flywheel=array(1.0, 2.0))
+    assert line.startswith("flywheel has 2 values along design, but omega2 has 3: one dimension has one length")

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from mpmath import mp
+from refusals import array
 
 import linksweep as ls
 
@@ -95,6 +96,17 @@ def test_designs_are_those_one_by_one():
         (lambda: ls.DCMotor.from_winding(24.0, -1.0, 0.05), "resistance = -1 ohm: must be greater than 0"),
         (lambda: ls.GovernedMotor(4.0, cut_from=9.0, cut_to=9.0), "cut_from = 9.0: must be less than cut_to = 9.0"),
         (lambda: ls.GovernedMotor(4.0, 1.0, 9.0, inertia=xr.DataArray([0.1, -0.1], dims="x")), r"inertia = -0.1 kg m"),
+        (lambda: ls.GovernedMotor(4.0, array(1.0, 2.0), array(8.0, 9.0, 9.0)), "cut_to has 3 values along design, but"),
+        (
+            lambda: ls.InductionMotor(
+                array(150.0, 160.0, design=[1, 2]), array(30.0, 20.0, design=[2, 1]), breakdown_slip=0.2
+            ),
+            "breakdown_torque has labels along design that are not those of synchronous_speed: make them equal",
+        ),
+        (
+            lambda: ls.DCMotor.from_winding(array(24.0, 48.0, design=[1, 2]), 0.6, array(0.05, 0.1, design=[2, 3])),
+            "constant has labels along design that are not those of voltage: make them equal",
+        ),
     ],
 )
 def test_refused_motors(make, message):

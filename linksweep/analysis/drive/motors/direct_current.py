@@ -8,8 +8,9 @@ from typing import Any
 from linksweep.analysis.drive.motors.motor import AnyMotor
 from linksweep.base.checked_number import checked_number
 from linksweep.base.fields import parameter
-from linksweep.base.validate import Number, Rule
+from linksweep.base.validate import Number, Rule, refuse
 from linksweep.physics import motor as physics
+from linksweep.scene.dimensions import argument_problems
 
 VOLTAGE = Rule("voltage", above=0.0)
 RESISTANCE = Rule("resistance", above=0.0)
@@ -32,7 +33,7 @@ class DCMotor(AnyMotor):
     Raises
     ------
     ValueError
-        If a number is out of bounds.
+        If a number is out of bounds, or arrays over one dim differ in length or labels.
 
     Examples
     --------
@@ -68,7 +69,7 @@ class DCMotor(AnyMotor):
         Raises
         ------
         ValueError
-            If a number is out of bounds.
+            If a number is out of bounds, or arrays over one dim differ in length or labels.
 
         Examples
         --------
@@ -80,6 +81,7 @@ class DCMotor(AnyMotor):
         voltage = checked_number("voltage", voltage, VOLTAGE)
         resistance = checked_number("resistance", resistance, RESISTANCE)
         constant = checked_number("constant", constant, CONSTANT)
+        refuse(argument_problems({}, voltage=voltage, resistance=resistance, constant=constant))
         return cls(constant * voltage / resistance, voltage / constant, inertia)
 
     @property

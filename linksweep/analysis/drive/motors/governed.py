@@ -30,7 +30,8 @@ class GovernedMotor(AnyMotor):
     Raises
     ------
     ValueError
-        If a number is out of bounds, or the governor begins to cut at the speed at which it ends, or beyond.
+        If a number is out of bounds, arrays over one dim differ in length or labels, or the governor begins to cut at
+        the speed at which it ends, or beyond.
 
     Examples
     --------

@@ -35,7 +35,7 @@ class InductionMotor(AnyMotor):
     Raises
     ------
     ValueError
-        If a number is out of bounds, or too many or too few are given.
+        If a number is out of bounds, too many or too few are given, or arrays over one dim differ in length or labels.
 
     Examples
     --------

@@ -9,7 +9,9 @@ import numpy as np
 from linksweep.base.checked_number import unit_attribute_problems
 from linksweep.base.equality import ByContent
 from linksweep.base.fields import field_problems, numbers
+from linksweep.base.frozen import field_values
 from linksweep.base.validate import Number, is_lazy, quote, refuse
+from linksweep.scene.dimensions import argument_problems
 
 
 class AnyMotor(ByContent):
@@ -20,7 +22,7 @@ class AnyMotor(ByContent):
     def __post_init__(self) -> None:
         super().__post_init__()
         refuse(field_problems(self))
-        refuse(unit_attribute_problems(numbers(self)))
+        refuse(unit_attribute_problems(numbers(self)) + argument_problems({}, **field_values(self)))
 
     @property
     def top_speed(self) -> Number:
