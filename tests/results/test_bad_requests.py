@@ -101,6 +101,51 @@ def test_arrays_that_fit_together_are_taken():
     ls.sweep(scene(omega2=over[0], alpha2=over[1]), 8)
 
 
+PRESS, STEEL, MOTOR = ls.example("press"), ls.material("S235"), ls.DCMotor(20.0, 300.0)
+FAST = replace(PRESS, omega2=array(10.0, 20.0, 30.0, design=[1, 2, 3]))
+ENGINE = replace(ls.example("engine"), omega2=FAST.omega2)
+REQUESTS = {
+    "about[1]": lambda a: ls.shaking_moment(ls.sweep(FAST, 8, of=["Fsx", "Fsy", "Ms"]), about=(a, 0.0)),
+    "pins.B.capacity": lambda a: ls.bearings(FAST, {"B": ls.Bearing(capacity=a)}, theta2=8),
+    "pins.main1.length": lambda a: ls.bearings(
+        ls.MultiCylinder(ENGINE, crank_angles=[0.0], main_positions=[-0.05, 0.05]), {"main1": ls.Bearing(length=a)}
+    ),
+    "pins.B.friction": lambda a: ls.pin_friction(FAST, {"B": ls.Bearing(diameter=0.02, friction=a)}),
+    "pins.C.capacity": lambda a: ls.sensitivities(FAST, of=["L10_C"], pins={"C": ls.Bearing(capacity=a)}),
+    "clearance.C": lambda a: ls.contact_loss(FAST, {"C": a}, theta2=8),
+    "fluctuation": lambda a: ls.flywheel(FAST, fluctuation=a),
+    "inertia": lambda a: ls.flywheel(FAST, inertia=a),
+    "motor.stall_torque": lambda a: ls.motor_load(FAST, replace(MOTOR, stall_torque=a), theta2=8),
+    "ratio": lambda a: ls.motor_load(FAST, MOTOR, ratio=a, theta2=8),
+    "efficiency": lambda a: ls.motor_load(FAST, MOTOR, efficiency=a, theta2=8),
+    "material.slope": lambda a: ls.strength(FAST, replace(STEEL, slope=a)),
+    "material.rocker.E": lambda a: ls.strength(FAST, {"rocker": replace(STEEL, E=a)}, links="rocker"),
+    "stress_concentration": lambda a: ls.strength(FAST, STEEL, stress_concentration=1.0 + a),
+    "effective_length[2]": lambda a: ls.size_links(FAST, STEEL, safety=2.0, effective_length=(1.0, a)),
+    "safety": lambda a: ls.size_links(FAST, STEEL, safety=a),
+    "allowable.shear": lambda a: ls.size_pins(FAST, allowable={"shear": a}, eye=0.02),
+    "eye": lambda a: ls.size_pins(FAST, allowable={"pressure": 6e7}, eye=a),
+    "fork.A": lambda a: ls.size_pins(
+        FAST, allowable={"bending": 6e7}, eye=0.02, fork={**dict.fromkeys("BCD", 1), "A": a}
+    ),
+    "at[2]": lambda a: ls.coupler_curve(FAST, at=(0.1, a), theta2=8),
+    "radius": lambda a: ls.counterweights(FAST, radius=a),
+    "fraction": lambda a: ls.counterweights(ENGINE, radius=0.05, fraction=a),
+    "counterweights[1].mass": lambda a: ls.with_counterweights(FAST, [ls.Counterweight("crank", a)]),
+}
+
+
+@pytest.mark.parametrize("path", REQUESTS)
+def test_arrays_of_a_request_that_do_not_fit_those_of_its_scene(path):
+    """They gave NaN, or fewer designs than there are, or an error of xarray that names none of the two."""
+    number, owner = array(0.5, 0.6, 0.7), "ds.Fsx" if path == "about[1]" else "omega2"
+    for labels in ([2, 3, 4], [3, 2, 1], ["a", "b", "c"]):
+        (line,) = refusal(REQUESTS[path], number.assign_coords(design=labels))
+        assert line.startswith(f"{path} has labels along design that are not those of {owner}: make them equal, or")
+    (line,) = refusal(REQUESTS[path], number[:2])
+    assert line.startswith(f"{path} has 2 values along design, but {owner} has 3: one dimension has one length; give")
+
+
 # ----------------------------------------------------------------------------------------------- geometry
 
 

@@ -18,6 +18,7 @@ from linksweep.base.fields import POLAR_POINT, field_problems, numbers, of_kind,
 from linksweep.base.validate import Number, Rule, choice_problems, quote, refuse
 from linksweep.mechanisms.balance import MassDistribution
 from linksweep.results.compute import require
+from linksweep.scene.dimensions import argument_problems
 from linksweep.scene.scene import Scene
 
 RADIUS = Rule("length", above=0.0)
@@ -85,7 +86,8 @@ def with_counterweights(scene: Scene, counterweights: Iterable[Counterweight]) -
     Raises
     ------
     ValueError
-        If a link cannot carry one, or a load would move with the link's centre of gravity (origin="cg").
+        If a link cannot carry one, a load would move with the link's centre of gravity (origin="cg"), or arrays over
+        one dim differ in length or labels.
 
     Examples
     --------
@@ -101,6 +103,7 @@ def with_counterweights(scene: Scene, counterweights: Iterable[Counterweight]) -
     masses = scene.mechanism.masses()
     carriers = {role: masses[role] for role in scene.mechanism.parts if role in masses}  # a cylinder has no mass
     refuse([p for weight in weights for p in choice_problems("counterweights.link", weight.link, carriers)])
+    refuse(argument_problems(scene.arrays, counterweights=weights))
     loaded = {weight.link for weight in weights}
     moving = [k for k, load in enumerate(scene.loads, 1) if load.on_centre_of in loaded]
     why = "would move with the counterweight; give its place from the pin"
@@ -155,7 +158,8 @@ def counterweights(scene: Scene, *, radius: Any, fraction: Number | None = None)
     Raises
     ------
     ValueError
-        If the machine has no such condition, a fraction stands beside complete balance, or a radius is out of bounds.
+        If the machine has no such condition, a fraction stands beside complete balance, a radius is out of bounds, or
+        arrays over one dim differ in length or labels.
 
     Notes
     -----
@@ -176,6 +180,7 @@ def counterweights(scene: Scene, *, radius: Any, fraction: Number | None = None)
     wholly = f"fraction = {quote(fraction)}: must be left out, a {kind} is balanced wholly"
     refuse([wholly] if fraction is not None and not mechanism.balances_partly else [])
     share = checked_number("fraction", 0.5 if fraction is None else fraction, Rule("dimensionless"))
+    refuse(argument_problems(scene.arrays, radius=radius, fraction=share))
     lacking = mechanism.balancing_moments(share)
     radii = by_link("radius", radius, list(lacking))
     return [_weight(link, moment, radii[link]) for link, moment in lacking.items()]

@@ -10,6 +10,7 @@ from linksweep.base.checked_number import checked_pair
 from linksweep.base.fields import PairField
 from linksweep.base.validate import Rule, refuse
 from linksweep.results.compute import require_dataset
+from linksweep.scene.dimensions import argument_problems
 
 POINT = PairField(Rule("length"), Rule("length"), "(x, y) in m from A")
 
@@ -32,7 +33,8 @@ def shaking_moment(ds: xr.Dataset, *, about: tuple[Any, Any] = (0.0, 0.0)) -> xr
     Raises
     ------
     ValueError
-        If the Dataset lacks one of them, or the point is no pair of lengths.
+        If the Dataset lacks one of them, the point is no pair of lengths, or arrays over one dim differ in length or
+        labels.
 
     Examples
     --------
@@ -43,10 +45,12 @@ def shaking_moment(ds: xr.Dataset, *, about: tuple[Any, Any] = (0.0, 0.0)) -> xr
     ('N m', True)
     """
     require_dataset(ds, "ls.sweep")
-    missing = [name for name in ("Fsx", "Fsy", "Ms") if name not in ds]
+    names = ("Fsx", "Fsy", "Ms")
+    missing = [name for name in names if name not in ds]
     advice = 'sweep with of=["Fsx", "Fsy", "Ms"]'
     refuse([f"ds has no {name}: {advice}" for name in missing])
     about = checked_pair("about", about, POINT)
+    refuse(argument_problems({f"ds.{name}": ds[name] for name in names}, about=about))
     moment = ds["Ms"] - (about[0] * ds["Fsy"] - about[1] * ds["Fsx"])
     several = any(hasattr(x, "dims") for x in about)
     where = "a point of each design" if several else f"({about[0]:g}, {about[1]:g}) m from A"

@@ -23,7 +23,7 @@ class Conditions(NamedTuple):
 
     def problems(self, scene: Scene) -> list[str]:
         """Return the problems of the bearings on a scene's machine."""
-        return bearing_problems(self.pins, pins_of(scene))
+        return bearing_problems(self.pins, pins_of(scene), scene)
 
     def life_problems(self, path: str, name: str) -> list[str]:
         """Return why the life of a bearing, such as L10_B, cannot be computed."""
@@ -53,7 +53,7 @@ def life_of(name: str) -> tuple[str, str]:
 
 
 def checked_conditions(scene: Scene, fluctuation: Any, pins: Any) -> Conditions:
-    """Return conditions; ValueError for bearings that are none, or of no pin."""
+    """Return conditions; ValueError for bearings that do not fit the scene."""
     conditions = Conditions(fluctuation, pins)
     refuse(conditions.problems(scene))
     return conditions

@@ -39,6 +39,7 @@ from linksweep.results.peaks import peaks
 from linksweep.results.search_checks import STEADY
 from linksweep.results.sweep import sweep
 from linksweep.scene.designs.lazy import in_memory
+from linksweep.scene.dimensions import argument_problems
 from linksweep.scene.scene import Scene
 
 ANGLE = "transmission_angle"
@@ -188,7 +189,8 @@ def coupler_curve(
     Raises
     ------
     ValueError
-        If the machine has no such link, or the point is no pair of a length and an angle.
+        If the machine has no such link, the point is no pair of a length and an angle, or arrays over one dim differ in
+        length or labels.
 
     Examples
     --------
@@ -202,6 +204,7 @@ def coupler_curve(
     role = _floating(scene) if link is None else link
     refuse(choice_problems("link", role, bodies))
     at = checked_pair("at", at, POLAR_POINT)
+    refuse(argument_problems(scene.arrays, at=at))
     body, cycle = bodies[role], sweep(scene, theta2, of=["status"])
     k, of_pin = body.number, (*body.pin_position, *body.pin_velocity, *body.pin_acceleration)
     motion = _numbers(scene, theta2, (*of_pin, f"r{k}x", f"r{k}y", f"omega{k}", f"alpha{k}"))

@@ -310,7 +310,8 @@ def objective(
     Raises
     ------
     ValueError
-        If a parameter or name is unknown, a range is no pair (low, high), or the scene refuses its values.
+        If a parameter or name is unknown, a range is no pair (low, high), bearings do not fit the scene, or the scene
+        refuses its values.
 
     Examples
     --------

@@ -105,7 +105,8 @@ def tolerance(
     Raises
     ------
     ValueError
-        If a path or name is unknown, a parameter has no derivative, or a tolerance is none.
+        If a path or name is unknown, a parameter has no derivative, a tolerance is none, or bearings do not fit the
+        scene.
 
     Notes
     -----

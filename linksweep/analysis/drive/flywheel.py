@@ -38,6 +38,7 @@ from linksweep.results.peak_search.groups import assembled_groups, different, em
 from linksweep.results.sweep import sweep
 from linksweep.scene.derivatives.differentiated import Differentiated, differentiated
 from linksweep.scene.derivatives.sloped import Sloped, slopes_of, value_of
+from linksweep.scene.dimensions import argument_problems
 from linksweep.scene.pairs import Array
 from linksweep.scene.scene import Scene
 
@@ -103,8 +104,8 @@ def flywheel(
     Raises
     ------
     ValueError
-        If fluctuation and inertia are both given or both left out, a number is out of bounds, or the crank stands
-        still, changes its speed or has an alpha2.
+        If fluctuation and inertia are both given or both left out, a number is out of bounds, the crank stands still,
+        changes its speed or has an alpha2, or arrays over one dim differ in length or labels.
 
     Notes
     -----
@@ -129,6 +130,7 @@ def flywheel(
         refuse(stalls if np.any(fluctuation >= 2.0) else [])
     else:
         inertia = checked_number("inertia", inertia, INERTIA)
+    refuse(argument_problems(one_cylinder(scene).arrays, fluctuation=fluctuation, inertia=inertia))
     steady = _at_constant_speed(scene)
     cycle, index = _cycle(steady, theta2), one_cylinder(scene).mechanism.index
     sum_of_both = cycle[NAMES[0]] + cycle[NAMES[1]] + 0.0 * cycle[index]

@@ -27,6 +27,7 @@ from linksweep.results.peak_search.groups import Group, assembled_groups, differ
 from linksweep.results.peak_search.paths import Part, Paths, reversals
 from linksweep.results.peak_search.singular.poles import may_have_poles, poles
 from linksweep.results.sweep import sweep
+from linksweep.scene.dimensions import argument_problems
 from linksweep.scene.grid import crank_grid
 from linksweep.scene.pairs import Array, in_period
 from linksweep.scene.scene import Scene
@@ -104,7 +105,8 @@ def motor_load(
     Raises
     ------
     ValueError
-        If the drive is no torque on a link, or a number is out of bounds.
+        If the drive is no torque on a link, a number is out of bounds, or arrays over one dim differ in length or
+        labels.
 
     Notes
     -----
@@ -123,6 +125,7 @@ def motor_load(
     require(scene, "drives")
     refuse(_problems(scene, motor))
     ratio, efficiency = checked_number("ratio", ratio, RATIO), checked_number("efficiency", efficiency, EFFICIENCY)
+    refuse(argument_problems(scene.arrays, motor=motor, ratio=ratio, efficiency=efficiency))
     torque = scene.mechanism.drives[scene.drive]
     _, link = pair_of(torque) or (1, 2)
     omega, alpha = f"omega{link}", f"alpha{link}"

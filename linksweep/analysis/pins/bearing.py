@@ -21,6 +21,7 @@ from linksweep.base.validate import Number, choice_problems, name_problems, quot
 from linksweep.physics import bearing as plain
 from linksweep.results.compute import require
 from linksweep.results.dataset import flags, joined, with_units
+from linksweep.scene.dimensions import argument_problems
 from linksweep.scene.scene import Scene
 
 EXPONENTS = {"ball": 3.0, "roller": 10.0 / 3.0}
@@ -94,20 +95,21 @@ class Bearing(ByContent):
 
 
 def checked_pins(scene: Scene, pins: Mapping[str, Bearing] | None) -> Mapping[str, tuple[int, int]]:
-    """Return the pins of a scene's machine; raise ValueError where it has none, or lacks the pin of a bearing."""
+    """Return the pins of a scene's machine; raise ValueError where it has none, or bearings do not fit it."""
     require(scene, "pins")
-    refuse(bearing_problems(pins, scene.mechanism.pins))
+    refuse(bearing_problems(pins, scene.mechanism.pins, scene))
     return scene.mechanism.pins
 
 
-def bearing_problems(pins: Any, known: Iterable[str]) -> list[str]:
-    """Return the problems of bearings by pin."""
+def bearing_problems(pins: Any, known: Iterable[str], scene: Scene) -> list[str]:
+    """Return the problems of bearings by pin, of those known, in the machine of a scene."""
     if not isinstance(pins, Mapping | None):
         return [f'pins = {quote(pins)}: must be as {{"B": ls.Bearing(...)}}']
     pins = pins or {}
     wrong = [problem for pin in pins for problem in name_problems("pins", pin, known)]
     strange = {pin: item for pin, item in pins.items() if not isinstance(item, Bearing)}
-    return wrong + [f"pins.{pin} = {quote(item)}: must be a Bearing" for pin, item in strange.items()]
+    wrong += [f"pins.{pin} = {quote(item)}: must be a Bearing" for pin, item in strange.items()]
+    return wrong or argument_problems(scene.arrays, pins=pins)
 
 
 def side_by_side(

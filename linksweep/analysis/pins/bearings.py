@@ -81,7 +81,7 @@ def bearings(
     ------
     ValueError
         If the machine lacks pins, or one of those named, a value is no Bearing, the angles span no part of a cycle,
-        or an array over theta2 states no angles.
+        an array over theta2 states no angles, or arrays over one dim differ in length or labels.
 
     Notes
     -----

@@ -30,12 +30,13 @@ import numpy as np
 import xarray as xr
 
 from linksweep.analysis.pins.by_pin import Numbers, links_of_pins, numbers_by_pin
-from linksweep.base.validate import Number, Rule
+from linksweep.base.validate import Number, Rule, refuse
 from linksweep.chains.between_links import force_name
 from linksweep.engine.threads import limits_threads
 from linksweep.results.dataset import by_command, joined, with_units
 from linksweep.results.sweep import sweep
 from linksweep.scene.designs.lazy import in_memory
+from linksweep.scene.dimensions import argument_problems
 from linksweep.scene.scene import Scene
 
 STEP = 0.02
@@ -81,7 +82,8 @@ def contact_loss(
     Raises
     ------
     ValueError
-        If a pin is unknown, a clearance is out of bounds, or the machine has no pins.
+        If a pin is unknown, a clearance is out of bounds, the machine has no pins, or arrays over one dim differ in
+        length or labels.
 
     Notes
     -----
@@ -100,6 +102,7 @@ def contact_loss(
     pins = links_of_pins(scene)
     scene = in_memory(scene)
     gaps = {} if clearance is None else numbers_by_pin("clearance", clearance, pins, CLEARANCE)
+    refuse(argument_problems(scene.arrays, clearance=clearance))
     names = [f"{force_name(*pair)}{axis}" for pair in pins.values() for axis in "xy"]
     cycle = sweep(scene, theta2, of=["omega2", *names])
     slopes = _slopes(scene, cycle, names)

@@ -34,7 +34,7 @@ def main_bearings(machine: MultiCylinder, pins: Mapping[str, Bearing] | None, th
     """Return loads, rotation, friction and life of main bearings, as `linksweep.bearings` does of pins."""
     refuse(count_problems("theta2", theta2) + ([] if machine.mains else [NO_MAINS]))
     mains = {main(k): f"F_{main(k)}" for k in range(1, len(machine.mains) + 1)}
-    refuse(bearing_problems(pins, mains))
+    refuse(bearing_problems(pins, mains, machine.engine))
     fitted = {name: (pins or {}).get(name, Bearing()) for name in mains}
     components = [f"{force}{axis}" for force in mains.values() for axis in ("", "x", "y")]
     cycle = machine.sweep(theta2, of=components)

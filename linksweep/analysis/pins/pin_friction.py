@@ -89,7 +89,8 @@ def pin_friction(
     Raises
     ------
     ValueError
-        If the machine lacks pins, or one of those named, a bearing has friction but no diameter, or branch="both".
+        If the machine lacks pins, or one of those named, a bearing has friction but no diameter, arrays over one
+        dim differ in length or labels, or branch="both".
 
     Notes
     -----

@@ -22,6 +22,7 @@ from linksweep.mechanisms.links import Bar
 from linksweep.results.compute import require_scene
 from linksweep.results.dataset import design_coordinates, flags, joined, provenance, with_units
 from linksweep.scene.designs.lazy import in_memory
+from linksweep.scene.dimensions import argument_problems
 from linksweep.scene.parameters import replaced
 from linksweep.scene.scene import Scene
 
@@ -82,7 +83,8 @@ def size_links(
     Raises
     ------
     ValueError
-        If a link is no Bar, a number is out of bounds, or branch="both".
+        If a link is no Bar, a number is out of bounds, arrays over one dim differ in length or labels, or
+        branch="both".
 
     Notes
     -----
@@ -111,6 +113,7 @@ def size_links(
         "effective_length": effective_length,
     }
     by_role = materials_of(roles, material)
+    refuse(argument_problems(scene.arrays, material=material, safety=required, **options))
     without_life = {role: replace(one, slope=None) for role, one in by_role.items()}
 
     def excess(log: Any) -> Any:

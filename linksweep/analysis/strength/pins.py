@@ -26,6 +26,7 @@ from linksweep.engine.threads import limits_threads
 from linksweep.results.dataset import by_command, flags, joined, with_units
 from linksweep.results.peaks import peaks
 from linksweep.scene.designs.lazy import in_memory
+from linksweep.scene.dimensions import argument_problems
 from linksweep.scene.scene import Scene
 
 CRITERIA = ("shear", "pressure", "bending")
@@ -69,7 +70,8 @@ def size_pins(
     Raises
     ------
     ValueError
-        If a name of a stress or pin is unknown, a number is out of bounds, or the machine has no pins.
+        If a name of a stress or pin is unknown, a number is out of bounds, the machine has no pins, or arrays over one
+        dim differ in length or labels.
 
     Notes
     -----
@@ -88,6 +90,7 @@ def size_pins(
     limits = _limits(allowable)
     eyes = _widths("eye", eye, pins)
     arms = {pin: 0.5 * width for pin, width in eyes.items()} if fork is None else _widths("fork", fork, pins)
+    refuse(argument_problems(scene.arrays, allowable=limits, eye=eye, fork=fork))
     forces = {pin: force_name(*pair) for pin, pair in pins.items()}
     worst = peaks(scene, of=list(forces.values()))
     largest = {pin: worst[f"{name}_peak"] for pin, name in forces.items()}

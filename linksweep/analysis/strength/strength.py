@@ -24,6 +24,7 @@ from linksweep.results.dataset import design_coordinates, flags, joined, provena
 from linksweep.results.peaks import peaks
 from linksweep.scene.at_sections import COUNT, marks
 from linksweep.scene.designs.lazy import in_memory
+from linksweep.scene.dimensions import argument_problems
 from linksweep.scene.scene import Scene
 
 FIBRES, ENDS = ("left", "right"), ("max", "min")
@@ -104,7 +105,8 @@ def strength(
     Raises
     ------
     ValueError
-        If a link is no beam, none is, a number is out of bounds, or branch="both".
+        If a link is no beam, none is, a number is out of bounds, arrays over one dim differ in length or labels, or
+        branch="both".
     ImportError
         If a material has a slope and rainflow, which counts cycles, is not installed.
 
@@ -130,6 +132,8 @@ def strength(
     pair = isinstance(effective_length, tuple | list) and len(effective_length) == len(PLANES)
     refuse([] if pair else [f"effective_length = {quote(effective_length)}: must be two, in and across the plane"])
     lengths = [checked_number(f"effective_length[{k}]", one, FACTOR) for k, one in enumerate(effective_length, 1)]
+    own = {"material": material, "stress_concentration": factor, "effective_length": lengths}
+    refuse(argument_problems(scene.arrays, **own))
     scene = in_memory(scene)
     parts = [_Link(scene, role, materials[role], factor).results(lengths) for role in roles]
     statuses = [part.pop("status") for part in parts]
