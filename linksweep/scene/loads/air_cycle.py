@@ -27,7 +27,7 @@ from linksweep.base.validate import Number, Rule, as_float, is_lazy, quote, refu
 from linksweep.mechanisms import Mechanism
 from linksweep.mechanisms.capabilities import lack
 from linksweep.mechanisms.cylinder import PistonCylinder
-from linksweep.scene.dimensions import dims_of
+from linksweep.scene.dimensions import argument_problems, dims_of
 from linksweep.scene.grid import crank_grid
 from linksweep.scene.parameters import along
 
@@ -79,6 +79,7 @@ class Cycle(ByContent):
         problems = field_problems(self, path + ".")
         if as_float(self.strokes) not in (2.0, 4.0):
             problems.append(f"{path}.strokes = {quote(self.strokes)}: must be 4 or 2")
+        problems = problems or argument_problems({}, **{path: self})
         return problems or self._compression_problems(path) or self._combustion_problems(path)
 
     def pressure(self, engine: Mechanism, theta2, turning: Number = 1.0) -> xr.DataArray:
@@ -102,9 +103,10 @@ class Cycle(ByContent):
         ------
         ValueError
             If a number of the cycle is out of bounds, the engine has no cylinder or both branches, an angle is no
-            finite number, or `turning` is neither 1 nor -1.
+            finite number, `turning` is neither 1 nor -1, or arrays over one dim differ in length or labels.
         """
         refuse(self.problems("cycle") + _misfits(engine))
+        refuse(argument_problems({}, engine=engine, cycle=self, turning=turning))
         turning = checked_number("turning", turning, Rule("dimensionless"))
         either_way = is_lazy(turning) or np.isin(turning, (1.0, -1.0)).all()
         refuse([] if either_way else [f"turning = {quote(turning)}: must be 1 or -1, the sign of omega2"])

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from refusals import array
 
 import linksweep as ls
 from linksweep.scene.file.reading import parse_scene
@@ -274,6 +275,7 @@ def test_the_example_engine():
 # -------------------------------------------------------------------------------------------- messages
 
 FOUR_BAR = ls.example("press").mechanism
+TWO = array(1.2, 1.4, design=[1, 2])
 SHORT = replace(ENGINE, rod=ls.Link(0.05, 0.0, 0.0), offset=0.02)
 REFUSED = [
     (
@@ -315,6 +317,10 @@ REFUSED = [
         {"pressure": replace(DIESEL, cutoff_ratio=20.0)},
         "loads[1].pressure.cutoff_ratio = 20: must be at most the compr",
     ),
+    (
+        {"pressure": replace(OTTO, gamma=array(1.3, 1.4), peak_pressure=array(5e6, 6e6, 7e6))},
+        "loads[1].pressure.gamma has 2 values along design, but loads[1].pressure.peak_pressure has 3: one dimension",
+    ),
 ]
 
 
@@ -340,6 +346,13 @@ def test_refusals_of_gas_pressure(changes, message):
         ({"theta2": 90.0}, "theta2 = 90.0: a count is a whole number; for one angle write [90.0]"),
         ({"turning": -300.0}, "turning = -300.0: must be 1 or -1, the sign of omega2"),
         ({"turning": xr.DataArray([1.0, 0.0], dims="way")}, "turning = <xarray.DataArray (way: 2)>"),
+        (
+            {
+                "cycle": replace(OTTO, gamma=TWO),
+                "engine": replace(ENGINE, offset=0.01 * TWO.assign_coords(design=[2, 1])),
+            },
+            "cycle.gamma has labels along design that are not those of engine.offset: make them equal, or rename",
+        ),
     ],
 )
 def test_refusals_of_the_pressure_of_a_cycle(changes, message):
