@@ -25,38 +25,54 @@ from linksweep.tables.table import Answer, Part, answer
 
 
 class Kind(NamedTuple):
-    """The tables of one function's result, which need these variables, and this number of dims at most beside them."""
+    """The tables of one function's result: the variables and dims that they need, and other dims that they can have."""
 
     parts: Callable[[xr.Dataset], Iterator[Part]]
     variables: frozenset[str]
     dims: frozenset[str]
+    others: frozenset[str]
+
+    def takes(self, ds: xr.Dataset) -> bool:
+        """Return whether a Dataset, which may be a part of the result, has what the tables need, and none is empty."""
+        whole = self.variables <= {*ds.variables} and self.dims <= {*ds.dims} <= self.dims | self.others
+        return whole and all(ds.sizes.values())
 
 
-def _kind(parts: Callable[[xr.Dataset], Iterator[Part]], variables: str, dims: str) -> Kind:
-    return Kind(parts, frozenset(variables.split()), frozenset(dims.split()))
+def _kind(parts: Callable[[xr.Dataset], Iterator[Part]], variables: str, dims: str, others: str = "") -> Kind:
+    return Kind(parts, *(frozenset(names.split()) for names in (variables, dims, others)))
 
 
 def _peaks(ds: xr.Dataset) -> Iterator[Part]:
     return study_parts(ds, machine_of_results(ds) or Mechanism)
 
 
+def _bearings(ds: xr.Dataset) -> Iterator[Part]:
+    return bearing_parts(ds) if {"pin", "main"} & {*ds.dims} else parts_of_any(ds)
+
+
+def _balance(ds: xr.Dataset) -> Iterator[Part]:
+    return iter([balance_table(ds)]) if ds.sizes["balance"] == 2 else parts_of_any(ds)
+
+
 KINDS: Mapping[str, Kind] = {
-    "bearings": _kind(bearing_parts, "life_status F L10h", "pin main frame theta2"),
-    "breakdown": _kind(share_parts, "status", "source theta2"),
+    "bearings": _kind(_bearings, "life_status F L10h", "theta2", "pin main frame"),
+    "breakdown": _kind(share_parts, "status theta2", "source theta2"),
     "choose_bearings": _kind(choice_parts, "required_capacity required_static_capacity F_peak", "pin"),
-    "compare": _kind(lambda ds: iter([balance_table(ds)]), "", "balance"),
+    "compare": _kind(_balance, "balance", "balance"),
     "duty": _kind(drive_parts, "effort_peak power_max work_fed", ""),
-    "flywheel": _kind(wheel_parts, "speed flywheel_inertia fluctuation drive_torque", "theta2"),
-    "run_up": _kind(run_parts, "duration time speed", "step"),
-    "run_down": _kind(run_parts, "duration time speed", "step"),
+    "flywheel": _kind(wheel_parts, "speed flywheel_inertia fluctuation drive_torque", "", "theta2"),
+    "run_up": _kind(run_parts, "duration time speed", "", "step"),
+    "run_down": _kind(run_parts, "duration time speed", "", "step"),
     "sensitivities": _kind(sensitivity_parts, "parameter_unit", "parameter"),
     "tolerance": _kind(tolerance_parts, "parameter_unit", "parameter"),
-    "steady_cycle": _kind(lambda ds: iter([steady_table(ds)]), " ".join(("status", *STEADY)), "theta2"),
+    "steady_cycle": _kind(lambda ds: iter([steady_table(ds)]), " ".join(("status", *STEADY)), "", "theta2"),
     "strength": _kind(strength_parts, "stress goodman_safety buckling_safety", "link plane"),
-    "system": _kind(system_parts, "matrix rhs", "theta2 equation unknown"),
+    "system": _kind(system_parts, "matrix rhs theta2", "equation unknown", "theta2"),
     "orders": _kind(lambda ds: iter([order_table(ds)]), "", "order"),
 }
 """The tables of results that are of one design, by the function that made them."""
+CHECKED = {"arc_start": "arc", "grashof": "toggle", "jam_start": "jam", "overshoot": "spline"}
+"""Dims that the table of a check needs, by the variable with which each comes."""
 
 
 def answer_of(ds: xr.Dataset) -> Answer:
@@ -80,11 +96,13 @@ def answer_of(ds: xr.Dataset) -> Answer:
 def _parts(ds: xr.Dataset) -> Iterator[Part]:
     command = re.match(r"linksweep\.(\w+)\(", str(ds.attrs.get("command", "")))
     name = command[1] if command else ""
-    if name == "check" and {"assembly", "arc_start"} <= ds.keys():
-        return iter([check_table(ds)])
     if name in ("peaks", "study") and "status" in ds and any(f"{each}_at" in ds for each in ds.data_vars):
         return _peaks(ds)
+    if name == "check" and {"assembly", "arc_start"} <= ds.keys() and _has_arcs(ds):
+        return iter([check_table(ds)])
     kind = KINDS.get(name)
-    if kind and kind.variables <= {*ds.variables} and {*ds.dims} <= kind.dims:
-        return kind.parts(ds)
-    return parts_of_any(ds)
+    return kind.parts(ds) if kind and kind.takes(ds) else parts_of_any(ds)
+
+
+def _has_arcs(check: xr.Dataset) -> bool:
+    return check.arc_start.size > 0 and {dim for name, dim in CHECKED.items() if name in check} <= {*check.dims}

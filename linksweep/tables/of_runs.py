@@ -39,7 +39,7 @@ def run_parts(ds: xr.Dataset) -> Iterator[Part]:
     if status != "ok":
         yield FAILURES[status]
         last = int(np.isfinite(ds["time"].values).sum()) - 1
-        ends = [(name, ds[name].isel(step=last)) for name in ("time", "angle", "speed")]
+        ends = [(name, ds[name].isel(step=last)) for name in ("time", "angle", "speed") if "step" in ds.dims]
         yield Table(("where it ends", "", ""), [_row(title, value) for title, value in ends], right=(1,))
         return
     known = {name: float(ds[name]) for name in NUMBERS if name in ds}

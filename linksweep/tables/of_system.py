@@ -12,6 +12,7 @@ from linksweep.tables.table import Part, Table
 
 def system_parts(ds: xr.Dataset) -> Iterator[Part]:
     """Yield the table of the system at each angle: a row for each equation, a column for each unknown."""
+    ds = ds if "theta2" in ds.dims else ds.expand_dims("theta2")
     unknowns = [str(name) for name in ds["unknown"].values]
     for angle in ds["theta2"].values:
         one = ds.sel(theta2=angle)

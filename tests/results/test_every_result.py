@@ -128,3 +128,47 @@ def test_every_file_passes_a_cf_checker(results, tmp_path):
     checker = [sys.executable, "-W", "ignore", "-c", CHECKER, *files]
     done = subprocess.run(checker, cwd=tmp_path, capture_output=True, text=True)
     assert done.stdout.count("All tests passed!") == len(files), done.stdout + done.stderr
+
+
+def parts_along(ds: xr.Dataset, dim: str) -> list[xr.Dataset]:
+    """Return parts of a result: its mean along a dim, no place there, and one with its label, as a dim and without."""
+    first = [ds.isel({dim: 0}), ds.isel({dim: [0]}), ds.isel({dim: 0}, drop=True)] if ds.sizes[dim] else []
+    return [ds.mean(dim, keep_attrs=True), ds.isel({dim: slice(0)}), *first]
+
+
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")  # numpy's, of means of nothing
+@pytest.mark.parametrize("name", sorted({*RESULTS} - SLOW))
+def test_every_part_of_a_result_prints(results, name):
+    whole = results[name]
+    for part in [each for dim in whole.dims for each in parts_along(whole, str(dim))]:
+        for of_part in [part, *(each for dim in part.dims for each in parts_along(part, str(dim)))]:
+            assert repr(of_part.linksweep) or not all(of_part.sizes.values())
+            assert of_part.linksweep._repr_html_()
+
+
+@pytest.mark.parametrize(
+    ("name", "place"),
+    [
+        ("strength", {"link": "coupler"}), ("bearings", {"pin": "B"}), ("choose_bearings", {"pin": "B"}),
+        ("breakdown", {"source": "gravity", "theta2": 30.0}), ("compare", {"balance": "after"}),
+        ("orders", {"order": 1}), ("check", {"arc": 0}),
+    ],
+)  # fmt: skip
+def test_one_place_of_a_result_shows_each_number_there(results, name, place):
+    part = results[name].isel(place) if name == "check" else results[name].sel(place)
+    rows = [line.split()[:2] for line in repr(part.linksweep).splitlines()]
+    numbers = {key: float(each) for key, each in part.items() if each.ndim == 0 and "flag_values" not in each.attrs}
+    finite = {key: value for key, value in numbers.items() if not key.endswith("_at") and np.isfinite(value)}
+    assert finite and all([key, f"{value:.6g}"] in rows for key, value in finite.items())
+
+
+def test_one_angle_of_systems_prints_as_its_own():
+    both, one = ls.system(PRESS, [0.0, 45.0]), ls.system(PRESS, [45.0])
+    assert repr(both.sel(theta2=45.0).linksweep) == repr(one.linksweep)
+    assert repr(one.linksweep).splitlines()[1].split()[:4] == ["sum", "Fx", "on", "2"]
+
+
+def test_a_run_that_comes_to_nothing_prints_without_its_steps():
+    """0.001 N m does not start the press."""
+    run = ls.run_up(PRESS, ls.Motor([0.0, 100.0], [1e-3, 0.0]), of=["F32"])
+    assert repr(run.isel(step=0).linksweep) == repr(run.linksweep).splitlines()[0]
