@@ -21,7 +21,8 @@ def scene_at(ds: xr.Dataset | Scene, where: Mapping[str, Any] | None = None, /, 
     Parameters
     ----------
     ds : Dataset or Scene
-        Dataset of linksweep over designs (peaks, a cycle, a Pareto front), or a scene over designs.
+        Dataset of linksweep over designs (peaks, a cycle, a Pareto front), or a scene over designs. One joined of
+        several scenes' results, as by `xarray.concat`, holds the scene of the first alone.
     where : mapping, default None
         Labels by dim, for names that are no Python words.
     **labels
