@@ -259,6 +259,12 @@ def count_problems(path: str, value: Any) -> list[str]:
     return [] if sound else [f"{path} = {quote(value)}: must be a whole number, 1 or more"]
 
 
+def flag_problems(path: str, value: Any) -> list[str]:
+    """Return a problem unless a value is a truth value."""
+    sound = isinstance(value, bool | np.bool_)
+    return [] if sound else [f"{path} = {quote(value)}: must be True or False"]
+
+
 def name_problems(path: str, name: Any, known: Iterable[str], listed: str = "") -> list[str]:
     """Return a problem unless a name is among the known ones.
 

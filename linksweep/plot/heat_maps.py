@@ -9,7 +9,7 @@ import xarray as xr
 
 from linksweep.analysis.design.bins import STATISTICS, binned, bins_of
 from linksweep.analysis.design.pareto import variable_problems
-from linksweep.base.validate import choice_problems, count_problems, name_problems, quote, refuse
+from linksweep.base.validate import choice_problems, count_problems, flag_problems, name_problems, quote, refuse
 from linksweep.plot.kit import scales, signals
 from linksweep.plot.kit.colors import BLACK, GREY, SHADE
 from linksweep.plot.kit.designs import column, heading, in_words, none_ok
@@ -91,8 +91,8 @@ def heat_map(
     Raises
     ------
     ValueError
-        For unknown names, for a result over more than two dims or none, for a sample of which the two parameters are
-        not stated, and where no design is ok.
+        For unknown names, for a `maximize` that is no truth value, for a result over more than two dims or none, for a
+        sample of which the two parameters are not stated, and where no design is ok.
 
     Examples
     --------
@@ -106,6 +106,8 @@ def heat_map(
     ('coupler length [m]', 'crank length [m]')
     """
     require_dataset(ds, "ls.peaks of several designs")
+    refuse(flag_problems("maximize", maximize) + count_problems("bins", bins))
+    refuse(choice_problems("statistic", statistic, STATISTICS) + (["bins = 1: must be 2 or more"] if bins == 1 else []))
     of, x, y, contours = (name_in_results(ds, name) for name in (of, x, y, contours))
     refuse(variable_problems(ds, "of", of, numbers="fiub"))
     ds = in_shown_units(ds)
@@ -162,11 +164,9 @@ def _other_dims(name: str, dims: list[str]) -> str:
 
 
 def _in_bins(
-    ds: xr.Dataset, of: str, x: Any, y: Any, bins: Any, statistic: Any, maximize: bool, contours: Any
+    ds: xr.Dataset, of: str, x: Any, y: Any, bins: int, statistic: str, maximize: bool, contours: Any
 ) -> xr.Dataset:
     """Return the result of a sample, and that of its contours, over two parameters in bins."""
-    refuse(count_problems("bins", bins) + choice_problems("statistic", statistic, STATISTICS))
-    refuse(["bins = 1: must be 2 or more"] if bins == 1 else [])
     (dim,) = ds[of].dims
     known = {str(name): item for name, item in ds.variables.items() if item.dims == (dim,) and item.dtype.kind in "fiu"}
     parameters = [str(name) for name in ds.coords if name in known and name != dim]

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.base.conversion import to_float64
-from linksweep.base.validate import choice_problems, refuse
+from linksweep.base.validate import choice_problems, flag_problems, refuse
 from linksweep.files.netcdf import scene_of
 from linksweep.mechanisms.drawing import Block, Drawing, Rail
 from linksweep.plot.kit import machine_parts, signals
@@ -69,7 +69,8 @@ def mechanism(
     Raises
     ------
     ValueError
-        Where the machine cannot be assembled at that angle, and for more than one design.
+        Where the machine cannot be assembled at that angle, for more than one design, and for `forces` that are no
+        truth value.
 
     Examples
     --------
@@ -92,6 +93,7 @@ def draw_machine(
     forces: bool = False,
 ) -> Axes:
     """Draw a machine as `mechanism` does, with the curve of its point over a part of the turn, or all of it."""
+    refuse(flag_problems("forces", forces))
     drawing = drawing_with_point(scene, link)
     angle = crank_angle(theta2)
     cycle = positions(scene, drawing, [angle], part)

@@ -14,7 +14,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.analysis.design.pareto import variable_problems
-from linksweep.base.validate import count_problems, refuse
+from linksweep.base.validate import count_problems, flag_problems, refuse
 from linksweep.plot.kit import scales
 from linksweep.plot.kit.colors import BLACK, BLUE, VERMILION
 from linksweep.plot.kit.designs import Column, Designs, by_chance, designs_of, in_words, whole
@@ -73,7 +73,7 @@ def scatter(
     Raises
     ------
     ValueError
-        For unknown names, and where no design is ok.
+        For unknown names, a `front` that is no truth value, and where no design is ok.
 
     Examples
     --------
@@ -88,6 +88,7 @@ def scatter(
     better = [name_in_results(ds, name) for name in requested("maximize", maximize)]
     names = {"x": x, "y": y} | ({} if color is None else {"color": color})
     problems = [problem for path, name in names.items() for problem in variable_problems(ds, path, name)]
+    problems += flag_problems("front", front)
     refuse(problems + [f"maximize: {name} is neither x nor y" for name in better if name not in (x, y)])
     designs = designs_of(in_shown_units(ds), names.values())
     best = _front(designs, (x, y), better) if front else np.array([], dtype=int)

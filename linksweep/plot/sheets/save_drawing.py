@@ -10,7 +10,7 @@ import xarray as xr
 
 from linksweep.base.checked_number import checked_number, checked_pair
 from linksweep.base.fields import POLAR_POINT
-from linksweep.base.validate import Rule, choice_problems, quote, refuse
+from linksweep.base.validate import Rule, choice_problems, flag_problems, quote, refuse
 from linksweep.files.atomic import ending_of, whole
 from linksweep.files.netcdf import scene_of
 from linksweep.plot.kit.drawings import drawing_of
@@ -52,7 +52,8 @@ def save_drawing(
     Raises
     ------
     ValueError
-        For another ending, for what `linksweep.plot.mechanism` refuses, and for a scale whose page is too large.
+        For another ending, for what `linksweep.plot.mechanism` refuses, for a `machine` that is no truth value, and
+        for a scale whose page is too large.
     ImportError
         For DXF where ezdxf is not installed: ``pip install "linksweep[cad]"``.
     OSError
@@ -76,6 +77,7 @@ def save_drawing(
     True
     """
     ending = ending_of(path, ENDINGS)
+    refuse(flag_problems("machine", machine))
     one = scene if isinstance(scene, Scene) else scene_of(scene, whole=False)
     angle = crank_angle(theta2)
     drawing_of(one.mechanism)  # refuses a machine without one, before its curves
