@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from linksweep.base.validate import refuse
 from linksweep.plot.kit.colors import SHADE
 from linksweep.scene.shown_units import UnitSystem
 
@@ -21,12 +22,16 @@ SMALL: dict[Any, Any] = {"font.size": 8.0, "axes.titlesize": 9.0, "lines.linewid
 
 
 def axes_or_new(ax: Axes | None, **figure: Any) -> Axes:
-    """Return `ax`, or the axes of a new figure where it is None."""
-    if ax is not None:
-        return ax
-    import matplotlib.pyplot as plt  # here: only those who plot need wait for it
+    """Return `ax`, or the axes of a new figure where it is None; raise ValueError for anything else."""
+    if ax is None:
+        import matplotlib.pyplot as plt  # here: only those who plot need wait for it
 
-    return plt.subplots(layout="constrained", **figure)[1]
+        return plt.subplots(layout="constrained", **figure)[1]
+    from matplotlib.axes import Axes
+
+    one = "must be one Axes of matplotlib, as figure.axes[0], or axes[0] of an array of them"
+    refuse([] if isinstance(ax, Axes) else [f"ax is a {type(ax).__name__}: {one}"])
+    return ax
 
 
 @contextmanager
