@@ -114,6 +114,20 @@ def overflow_problems(path: str, number: Number, meaning: str) -> list[str]:
     return [] if sound else [f"{path}: its {meaning} is more than a number can hold; reduce its measures"]
 
 
+def less_problems(path: str, value: Any, bound: str, limit: Any, kind: str, share: float = 1.0) -> list[str]:
+    """Return the problem of a number that must be less than a share of another, in some design; what is no number, or
+    not yet computed, has none here."""
+    if not (_is_known(value) and _is_known(limit) and np.any(value >= share * limit)):
+        return []
+    number, most = (quote(each) if is_array(each) else Rule(kind).measured(each) for each in (value, share * limit))
+    return [f"{path} = {number}: must be less than {bound} = {most}"]
+
+
+def _is_known(value: Any) -> bool:
+    known = is_array(value) and not is_lazy(value) and not is_quantity(value) and value.dtype.kind == "f"
+    return known or type(value) is float
+
+
 def number_problems(path: str, value: Any, rule: Rule) -> list[str]:
     if type(value) is float and rule.allows(value):
         return []

@@ -15,13 +15,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from linksweep.base.equality import ByContent
 from linksweep.base.fields import CheckedPartField, parameter
-from linksweep.base.validate import Number, is_lazy, quote, refuse
+from linksweep.base.validate import Number, less_problems, refuse
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -86,7 +85,7 @@ class Tube(ByContent):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        refuse(_not_less("inner", self.inner, "outer", self.outer))
+        refuse(less_problems("inner", self.inner, "outer", self.outer, "length"))
 
     @property
     def area(self) -> Number:
@@ -145,8 +144,8 @@ class IBeam(ByContent):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        refuse(_not_less("web", self.web, "width", self.width))
-        refuse(_not_less("2·flange", 2.0 * self.flange, "height", self.height))
+        refuse(less_problems("web", self.web, "width", self.width, "length"))
+        refuse(less_problems("flange", self.flange, "half the height", self.height, "length", share=0.5))
 
     @property
     def _inside(self) -> Number:
@@ -192,11 +191,3 @@ def shank_and_eyes(length: Number, mass: Number, inertia: Number, x: Number) -> 
     eye, moment = mass * share - 0.5 * shank, mass * np.maximum(x - length, 0.0)
     left = inertia + mass * x * x - (shank / 3.0 + eye) * length * length - 2.0 * length * moment
     return shank, eye, moment, share * left
-
-
-def _not_less(name: str, value: Any, other: str, limit: Any) -> list[str]:
-    """Return the problem of a measure that must be less than another, in some design."""
-    if is_lazy(value) or is_lazy(limit) or callable(value) or isinstance(value, str) or isinstance(limit, str):
-        return []
-    wrong = bool(np.any(value >= limit))
-    return [f"{name} = {quote(value)}: must be less than {other} = {quote(limit)}"] if wrong else []

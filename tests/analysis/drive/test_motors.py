@@ -89,12 +89,12 @@ def test_designs_are_those_one_by_one():
     ("make", "message"),
     [
         (lambda: ls.InductionMotor(157.0, 15.0, rated_torque=6.0), "give both rated_torque and rated_speed, or break"),
-        (lambda: ls.InductionMotor(157.0, 15.0, rated_torque=6.0, rated_speed=158.0), "rated_speed = 158.0: must be l"),
-        (lambda: ls.InductionMotor(157.0, 5.0, rated_torque=6.0, rated_speed=150.0), "rated_torque = 6.0: must be les"),
+        (lambda: ls.InductionMotor(157.0, 15.0, rated_torque=6.0, rated_speed=158.0), "rated_speed = 158 rad.s: must"),
+        (lambda: ls.InductionMotor(157.0, 5.0, rated_torque=6.0, rated_speed=150.0), "rated_torque = 6 N m: must be l"),
         (lambda: ls.InductionMotor("12 N m", 5.0, breakdown_slip=0.2), 'synchronous_speed = "12 N m": N m is a unit'),
         (lambda: ls.DCMotor(0.0, 400.0), "stall_torque = 0 N m: must be greater than 0"),
         (lambda: ls.DCMotor.from_winding(24.0, -1.0, 0.05), "resistance = -1 ohm: must be greater than 0"),
-        (lambda: ls.GovernedMotor(4.0, cut_from=9.0, cut_to=9.0), "cut_from = 9.0: must be less than cut_to = 9.0"),
+        (lambda: ls.GovernedMotor(4.0, cut_from=9.0, cut_to=9.0), "cut_from = 9 rad.s: must be less than cut_to = 9"),
         (lambda: ls.GovernedMotor(4.0, 1.0, 9.0, inertia=xr.DataArray([0.1, -0.1], dims="x")), r"inertia = -0.1 kg m"),
         (lambda: ls.GovernedMotor(4.0, array(1.0, 2.0), array(8.0, 9.0, 9.0)), "cut_to has 3 values along design, but"),
         (

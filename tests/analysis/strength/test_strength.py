@@ -252,5 +252,24 @@ def test_the_tube_and_the_bar_have_the_moments_of_their_shapes():
     assert bar.modulus == pytest.approx(0.01 * 0.03**2 / 6) and bar.second_moment_across == pytest.approx(
         0.03 * 0.01**3 / 12
     )
-    with pytest.raises(ValueError, match=r"inner = 0\.03: must be less than outer = 0\.03"):
+    with pytest.raises(ValueError, match=r"inner = 0\.03 m: must be less than outer = 0\.03 m"):
         ls.Tube(0.03, inner=0.03)
+
+
+def test_flanges_of_half_the_height_leave_no_room_for_a_web():
+    with pytest.raises(ValueError, match=r"^flange = 0\.05 m: must be less than half the height = 0\.05 m$"):
+        ls.IBeam(0.1, 0.05, 0.005, 0.05)
+    some = xr.DataArray([0.02, 0.05], dims="design")
+    with pytest.raises(ValueError, match=r"^flange = .*: must be less than half the height = 0\.05 m$"):
+        ls.IBeam(0.1, 0.05, 0.005, some)
+    assert ls.IBeam(0.1, 0.05, 0.005, 0.0499).area == pytest.approx(2 * 0.05 * 0.0499 + 0.005 * 0.0002, rel=1e-12)
+
+
+@pytest.mark.parametrize("value", [None, True, [0.1], (0.1,), {}, 1j, np.array([0.1, 0.2]), b"1", ls.Tube], ids=repr)
+def test_the_machine_says_which_measure_of_a_section_is_no_number(value):
+    for name, section in (
+        ("outer", ls.Tube(value)), ("inner", ls.Tube(0.1, value)), ("height", ls.IBeam(value, 0.05, 0.005, 0.008)),
+        ("web", ls.IBeam(0.1, 0.05, value, 0.008)), ("flange", ls.IBeam(0.1, 0.05, 0.005, value)),
+    ):  # fmt: skip
+        with pytest.raises(ValueError, match=rf"^crank\.section\.{name}\b"):
+            replace(ls.example("press").mechanism, crank=ls.Link(0.08, 0.4, 3e-4, section=section))

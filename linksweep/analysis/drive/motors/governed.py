@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from linksweep.analysis.drive.motors.motor import AnyMotor, not_less_problems
+from linksweep.analysis.drive.motors.motor import AnyMotor
 from linksweep.base.fields import parameter
-from linksweep.base.validate import Number, refuse
+from linksweep.base.validate import Number, less_problems, refuse
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -48,7 +48,7 @@ class GovernedMotor(AnyMotor):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        refuse(not_less_problems("cut_from", self.cut_from, "cut_to", self.cut_to))
+        refuse(less_problems("cut_from", self.cut_from, "cut_to", self.cut_to, "angular_velocity"))
 
     @property
     def top_speed(self) -> Number:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from linksweep.analysis.drive.motors.motor import AnyMotor, not_less_problems
+from linksweep.analysis.drive.motors.motor import AnyMotor
 from linksweep.base.fields import parameter
-from linksweep.base.validate import Number, refuse
+from linksweep.base.validate import Number, less_problems, refuse
 from linksweep.physics import motor as physics
 
 
@@ -58,10 +58,9 @@ class InductionMotor(AnyMotor):
         either = (all(rated) and self.breakdown_slip is None) or (not any(rated) and self.breakdown_slip is not None)
         refuse([] if either else ["give both rated_torque and rated_speed, or breakdown_slip alone"])
         if all(rated):
-            refuse(
-                not_less_problems("rated_speed", self.rated_speed, "synchronous_speed", self.synchronous_speed)
-                + not_less_problems("rated_torque", self.rated_torque, "breakdown_torque", self.breakdown_torque)
-            )
+            speeds = self.rated_speed, "synchronous_speed", self.synchronous_speed, "angular_velocity"
+            torques = self.rated_torque, "breakdown_torque", self.breakdown_torque, "torque"
+            refuse(less_problems("rated_speed", *speeds) + less_problems("rated_torque", *torques))
 
     @property
     def top_speed(self) -> Number:

@@ -10,7 +10,7 @@ from linksweep.base.checked_number import unit_attribute_problems
 from linksweep.base.equality import ByContent
 from linksweep.base.fields import field_problems, numbers
 from linksweep.base.frozen import field_values
-from linksweep.base.validate import Number, is_lazy, quote, refuse
+from linksweep.base.validate import Number, quote, refuse
 from linksweep.scene.dimensions import argument_problems
 
 
@@ -88,9 +88,3 @@ def motor_problems(motor: Any) -> list[str]:
     """Return the problem of anything but a motor."""
     kinds = "Motor, InductionMotor, DCMotor or GovernedMotor"
     return [] if isinstance(motor, AnyMotor) else [f"motor = {quote(motor)}: must be a {kinds}"]
-
-
-def not_less_problems(name: str, value: Number, other: str, limit: Number) -> list[str]:
-    """Return the problem of a number that must be less than another, in some design."""
-    wrong = not (is_lazy(value) or is_lazy(limit)) and bool(np.any(value >= limit))
-    return [f"{name} = {quote(value)}: must be less than {other} = {quote(limit)}"] if wrong else []
