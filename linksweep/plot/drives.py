@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.analysis.drive.motors.curve import Motor
-from linksweep.analysis.drive.motors.motor import AnyMotor
+from linksweep.analysis.drive.motors.motor import AnyMotor, motor_problems
 from linksweep.base.validate import refuse
 from linksweep.files.netcdf import scene_of
 from linksweep.plot.kit import signals
@@ -257,7 +257,7 @@ def motor_load(ds: xr.Dataset, motor: AnyMotor, *, ax: Axes | None = None) -> Ax
     Raises
     ------
     ValueError
-        For a Dataset without a motor's torque, and for more than one design.
+        For a Dataset without a motor's torque, for what is no motor, and for more than one design.
 
     Examples
     --------
@@ -269,6 +269,7 @@ def motor_load(ds: xr.Dataset, motor: AnyMotor, *, ax: Axes | None = None) -> Ax
     """
     require_dataset(ds, "ls.motor_load")
     known = {"motor_torque", "torque_margin_min"} <= ds.keys()
+    refuse(motor_problems(motor))
     refuse([] if known else ["ds has no motor_torque with its least margin: take what ls.motor_load returns"])
     signals.require_angles(ds)
     results, system, ds = ds, units_of(ds), results_in_shown_units(ds)

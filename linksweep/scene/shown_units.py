@@ -84,14 +84,18 @@ class UnitSystem:
 SI = UnitSystem("")
 
 
-@lru_cache(maxsize=64)
-def unit_system(text: str) -> UnitSystem:
+def unit_system(text: Any) -> UnitSystem:
     """Return the system of units of a text: a name of `SYSTEMS`, or units with commas between.
 
     Raises ValueError for what is no unit, and for two units of one kind.
     """
     if not isinstance(text, str):
         raise ValueError(_not_a_system(text))
+    return _of_text(text)
+
+
+@lru_cache(maxsize=64)
+def _of_text(text: str) -> UnitSystem:
     chosen: dict[str, str] = {}
     for word in filter(None, map(str.strip, SYSTEMS.get(text, text).split(","))):
         kind, spelling = _kind_of(word)

@@ -163,6 +163,11 @@ def test_functions_receive_all_pins_and_the_torque_or_the_requested_quantities()
         (MAY_BE, {}, "minimize: give it, or maximize"),
         (MAY_BE, {"minimize": "F32_peak", "maximize": "T12_peak"}, "minimize: give either or maximize"),
         (MAY_BE, {"minimize": 3}, "minimize = 3: must be a name, or a function"),
+        (
+            MAY_BE,
+            {"minimize": "F32_peak", "constraint": 900.0},
+            "constraint = 900.0: must be a function of the Dataset",
+        ),
         (MAY_BE, {"minimize": "F32"}, "minimize: nothing is named 'F32'; did you mean \"F32_peak\"?"),
         (MAY_BE, {"maximize": "F99_peak"}, "of: nothing is named 'F99'"),
         ({}, {"minimize": "F32_peak"}, "parameters = {}: must name what varies"),

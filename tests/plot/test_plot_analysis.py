@@ -242,3 +242,10 @@ def test_the_largest_moment_before_a_jump_is_that_of_the_load_by_hand():
     ax = ls.plot.moment_diagram(scene, "coupler")
     (marked,) = line(ax, "_worst").get_ydata()
     assert abs(marked) == pytest.approx(expected, rel=1e-6)
+
+
+@pytest.mark.parametrize("other", [None, "servo", 3.0, ls.Motor], ids=repr)
+def test_a_motor_is_plotted_beside_its_load_and_nothing_else(other):
+    load = ls.motor_load(ls.example("press"), ls.Motor([0.0, 600.0], [4.0, 1.0]), ratio=10.0, theta2=24)
+    with pytest.raises(ValueError, match=r"^motor = .*: must be a Motor, InductionMotor, DCMotor or GovernedMotor$"):
+        ls.plot.motor_load(load, other)

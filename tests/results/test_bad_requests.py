@@ -2,6 +2,7 @@
 
 import itertools
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -355,3 +356,20 @@ def test_a_letter_that_several_joints_share_is_refused():
     assert "F53" in ls.sweep(press, 8, of=["C:lower"])
     with pytest.raises(ValueError, match=r"^of: several links share pin C; name one of C:upper, C:lower$"):
         ls.peaks(press, of=["C"])
+
+
+@pytest.mark.parametrize("dim", [3, None, True, "", ["design"], np.array(["design"]), b"design"], ids=repr)
+def test_the_dim_of_designs_is_a_name(dim):
+    ranges = {"ground": (0.19, 0.20)}
+    for draw in (partial(ls.sample, n=2), partial(ls.draw, designs=[0])):
+        lines = refusal(draw, ls.example("press"), ranges, dim=dim)
+        assert lines == [f'dim = {dim!r}: must be a name, as dim="design"']
+
+
+def test_a_truth_value_is_no_label_of_numbers():
+    """In Python True == 1."""
+    numbers = replace(SCENE, omega2=array(10.0, 20.0, run=[0, 1], dims="run"))
+    truths = replace(SCENE, omega2=array(10.0, 20.0, run=[False, True], dims="run"))
+    (line,) = refusal(ls.scene_at, numbers, run=True)
+    assert line == "run = True: must be one of its 2 labels, of which the first is 0"
+    assert ls.scene_at(numbers, run=1).omega2 == ls.scene_at(truths, run=True).omega2 == 20.0

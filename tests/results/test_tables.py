@@ -138,6 +138,7 @@ def test_units_follow_from_those_chosen(system, si, unit):
         ("in, lbd", r'units: "lbd" is no unit; did you mean "lb"\?; write "SI", "US", "mm", or units as in'),
         ("in, mm", 'units = "in, mm": "in" and "mm" are both units of length; keep one'),
         (3, "units: 3 is no unit"),
+        (["in", "lbf"], r'units: \["in", "lbf"\] is no unit; write "SI", "US", "mm", or units as in'),
     ],
 )
 def test_units_that_are_none_are_refused(text, message):

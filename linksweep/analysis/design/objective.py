@@ -310,8 +310,8 @@ def objective(
     Raises
     ------
     ValueError
-        If a parameter or name is unknown, a range is no pair (low, high), bearings do not fit the scene, or the scene
-        refuses its values.
+        If a parameter or name is unknown, a range is no pair (low, high), the constraint is no function, bearings do
+        not fit the scene, or the scene refuses its values.
 
     Examples
     --------
@@ -332,6 +332,9 @@ def objective(
     target, path = (maximize, "maximize") if minimize is None else (minimize, "minimize")
     if not isinstance(target, str) and not callable(target):
         refuse([f"{path} = {quote(target)}: must be a name, or a function of the Dataset of peaks"])
+    bound = 'a function of the Dataset of peaks; bounds of a result are subject_to={"F32_peak": (None, 900)}'
+    known = constraint is None or callable(constraint)
+    refuse([] if known else [f"constraint = {quote(constraint)}: must be {bound}"])
     if isinstance(target, str):
         (target,) = requested(path, target, scene)
     names = _names(scene, target, constraint, None if of is None else list(of))

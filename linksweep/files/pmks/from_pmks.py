@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 from urllib.parse import unquote
 
-from linksweep.base.validate import quote
+from linksweep.base.validate import quote, refuse
 from linksweep.files.pmks.drawing import Drawing, Force, Joint
 from linksweep.files.pmks.linkage import linkage_of, words_of
 from linksweep.files.pmks.machines import Machine, machines
@@ -94,7 +94,9 @@ def from_pmks(source: str | os.PathLike[str], *, machine: int = 1) -> Scene:
 
 def _document(source: str | os.PathLike[str]) -> str:
     """Return the text of a document, which a link or a file holds."""
-    text = os.fspath(source)
+    known = "must be the link that PMKS+ shares, or the name of a file"
+    refuse([] if isinstance(source, str | os.PathLike) else [f"source is a {type(source).__name__}: {known}"])
+    text = str(os.fspath(source))
     if "?" in text:
         text = text.partition("?")[2].partition("#")[0]
     elif isinstance(source, os.PathLike) or text.endswith(".pmks"):

@@ -59,7 +59,9 @@ def _checked(text: str) -> str:
     if mark and checksum != _checksum(body):
         raise ValueError(f"the document is damaged: its checksum is {checksum}, not {_checksum(body)}; copy it again")
     if len(body) < 2 or body[-1] != DIGITS[(len(body) - 1) % 62]:
-        raise ValueError(f"{quote(text)} is no document of PMKS+, or it is cut off: copy the whole link or file")
+        raise ValueError(
+            f"{quote(text)} is no document of PMKS+, or it is cut off: copy it whole; the name of a file ends in .pmks"
+        )
     return body[:-1]
 
 

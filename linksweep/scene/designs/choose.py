@@ -55,7 +55,8 @@ def _place(label: Any, labels: np.ndarray) -> int:
     if requested.ndim or isinstance(label, slice):
         raise ValueError(f"{quote(label)}: must be one label")
     numeric = requested.dtype.kind in "fiu" and labels.dtype.kind in "fiu"
-    matches = np.flatnonzero(labels == requested)
+    one_kind = requested.dtype.kind != "b" or labels.dtype.kind == "b"  # numpy takes True for 1
+    matches = np.flatnonzero((labels == requested) & one_kind)
     if numeric and not matches.size:
         matches = np.flatnonzero(np.isclose(labels, requested, rtol=1e-12, atol=0.0))
     if matches.size == 1:

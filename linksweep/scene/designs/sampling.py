@@ -115,6 +115,8 @@ def parameter_problems(scene: Any, parameters: Any) -> list[str]:
 
 def dim_problems(scene: Any, dim: Any) -> list[str]:
     """Return the problems of a dim for the designs drawn of a scene."""
+    if not isinstance(dim, str) or not dim:
+        return [f'dim = {quote(dim)}: must be a name, as dim="design"']
     if not isinstance(scene, Scene):
         return []
     taken = {dim for array in scene.arrays.values() for dim in array.dims}

@@ -131,6 +131,14 @@ def test_links_files_and_texts_are_one_document(tmp_path):
 def test_a_missing_file_and_another_program_are_named(tmp_path):
     with pytest.raises(ValueError, match=r"press\.pmks: there is no such file"):
         ls.from_pmks(tmp_path / "press.pmks")
+    with pytest.raises(
+        ValueError, match=r"press\.txt' is no document of PMKS\+, .*; the name of a file ends in \.pmks$"
+    ):
+        ls.from_pmks("press.txt")
+    with pytest.raises(
+        ValueError, match=r"^source is a Scene: must be the link that PMKS\+ shares, or the name of a file"
+    ):
+        ls.from_pmks(ls.example("press"))
     with pytest.raises(ValueError, match=r"a link with data=… is of another program"):
         ls.from_pmks("https://example.org/?data=N4IgViBcDa0g")
 
