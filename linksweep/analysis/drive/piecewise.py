@@ -26,8 +26,11 @@ TOLERANCE = 1e-14
 """Size of the last terms of a piece, relative to the largest value over the cycle, times its part of the cycle."""
 HALVINGS = 40
 """Most halvings of a piece: from 15 degrees down to the last few digits of an angle."""
+MOST = 2**18
+"""Most pieces of a design that are halved at a time."""
 FIRST_NOISE, NOISE = 3, 0.05
-"""Halvings after which a quantity whose last terms still have this size in most pieces counts as rounding noise."""
+"""Halvings after which a quantity whose last terms, in those before, still have this size in most pieces counts as
+rounding noise."""
 PLACES = np.cos(np.linspace(np.pi, 0.0, 2 * TERMS + 1))
 """Places x of a piece at which extremes are bracketed."""
 POINTS, WEIGHTS = legendre.leggauss(TERMS)
@@ -107,6 +110,7 @@ def piecewise(group: Any, names: tuple[str, ...]) -> Piecewise:
     path, first = np.nonzero(paths.cuts[:, 1:] > paths.cuts[:, :-1])
     pieces = np.stack([paths.cuts[path, first], np.diff(paths.cuts, axis=1)[path, first]])
     done, scale, full = [], np.zeros((len(names), count)), np.bincount(path, minlength=count)
+    before = np.full((len(names), len(path)), np.inf)
     for halvings in range(HALVINGS + 1):
         values = _values(group, names, paths.row[path], pieces)
         # no matrix product: the order in which it sums, and so the last bit, depends on the number of pieces
@@ -116,12 +120,14 @@ def piecewise(group: Any, names: tuple[str, ...]) -> Piecewise:
                 np.maximum.at(row, path, size)
         tail = np.abs(terms[..., -2:]).max(axis=-1)
         wide = tail * (pieces[1] / group.scene.period) > TOLERANCE * scale[:, path]
-        wide &= ~_noise(wide, tail / np.maximum(scale[:, path], 1e-300), path, full, halvings)
+        if halvings >= FIRST_NOISE:
+            wide &= ~_noise(wide & (tail > NOISE * before), path, full * 2.0**halvings)
         halved = wide.any(axis=0) & (halvings < HALVINGS)
+        halved &= (np.bincount(path, halved, len(full)) <= MOST)[path]
         done.append((path[~halved], pieces[:, ~halved], np.moveaxis(terms[:, ~halved], 1, -1)))
         if not halved.any():
             break
-        (start, width), path = pieces[:, halved], np.tile(path[halved], 2)
+        (start, width), path, before = pieces[:, halved], np.tile(path[halved], 2), np.tile(tail[:, halved], 2)
         pieces = np.stack([np.append(start, start + 0.5 * width), np.tile(0.5 * width, 2)])
     path, (start, width), terms = (np.concatenate(parts, axis=-1) for parts in zip(*done, strict=True))
     terms = np.moveaxis(terms, -1, 0)
@@ -137,12 +143,11 @@ def _values(group: Any, names: tuple[str, ...], row: Array, pieces: Array) -> Ar
     return group.values(names, np.repeat(row, TERMS), angles).reshape(len(names), len(row), TERMS)
 
 
-def _noise(wide: Array, tail: Array, path: Array, full: Array, halvings: int) -> Array:
-    """Return whether pieces belong to a quantity that is rounding noise over most of the cycle, as a torque of 0."""
-    if halvings < FIRST_NOISE:
-        return np.zeros(wide.shape, dtype=bool)
-    large = np.stack([np.bincount(path, each, len(full)) for each in wide & (tail > NOISE)])
-    return (large > 0.5 * full * 2.0**halvings)[:, path]
+def _noise(lasting: Array, path: Array, full: Array) -> Array:
+    """Return whether pieces belong to a quantity that is rounding noise, as a torque of 0: its last terms are `lasting`
+    over most of the cycle, which has as many pieces as are `full`."""
+    count = np.stack([np.bincount(path, each, len(full)) for each in lasting])
+    return (count > 0.5 * full)[:, path]
 
 
 def largest(curves: Piecewise, series: Array) -> tuple[Array, Place]:

@@ -8,6 +8,9 @@ import xarray as xr
 
 import linksweep as ls
 from linksweep.analysis.drive.flywheel import flywheel_slopes
+from linksweep.analysis.drive.wittenbauer import NAMES, Turning
+from linksweep.results.peak_search.between import EVERYWHERE
+from linksweep.results.peak_search.groups import assembled_groups, different
 from linksweep.scene.parameters import free, replaced
 
 LIGHT = ls.FourBar(*(ls.Link(length, 0.0, 0.0) for length in (0.08, 0.22, 0.18)), ground=0.2)
@@ -66,6 +69,29 @@ def test_a_yoke_by_its_closed_form():
     np.testing.assert_allclose(
         0.5 * (expected + J) * back.speed**2, 0.5 * expected * (12.0 * (1.0 + s)) ** 2 + 0.0 * J, rtol=1e-10
     )
+
+
+@pytest.mark.parametrize("large", [1e5, 1e9, 1e11])
+def test_torques_that_cancel_leave_their_rounding_errors(large):
+    """T = 4 + 6 sin 2θ beside two torques of opposite signs, whose rounding no series follows."""
+    loads = [
+        ls.Load("crank", torque=lambda angle: -large * np.cos(np.radians(angle)) - 6.0 * np.sin(np.radians(2 * angle))),
+        ls.Load("crank", torque=lambda angle: large * np.cos(np.radians(angle)) - 4.0),
+    ]
+    wheel = ls.flywheel(ls.Scene(LIGHT, 20.0, loads=loads), fluctuation=0.03)
+    np.testing.assert_allclose(wheel.flywheel_inertia, 6.0 / (0.03 * 400.0), rtol=max(1e-12, 1e-18 * large))
+
+
+def test_a_parallelogram_without_loads_has_a_constant_inertia():
+    """J = 2 (I + m a²/4) + M a²; rounding errors of its torque, which is 0, grow about the flat positions."""
+    bars = [ls.Bar(length, 0.02, 0.01, 7800.0) for length in (0.1, 0.3, 0.1)]
+    scene = ls.Scene(ls.FourBar(*bars, ground=0.3), omega2=10.0)
+    [(_, group)] = assembled_groups(scene, different(scene, NAMES), (EVERYWHERE,))
+    turning = Turning.of(group)
+    side, coupler = 0.156 * (0.1**2 + 0.02**2) / 12.0 + 0.156 * 0.05**2, 0.468 * 0.1**2
+    np.testing.assert_allclose(turning.inertia[..., 0], 2.0 * side + coupler, rtol=1e-12)
+    np.testing.assert_allclose(turning.energy_fluctuation, 0.0, atol=1e-14)
+    assert np.isnan(ls.flywheel(scene, inertia=0.1).fluctuation)  # it may fold at 0 and 180 degrees
 
 
 def test_designs_whose_torque_is_one_share_their_flywheel():
