@@ -78,6 +78,25 @@ def test_a_gear_with_losses_against_lagrange_and_dop853():
     np.testing.assert_allclose(cycle.motor_work, taken + cycle.gear_loss, rtol=1e-7)
 
 
+@pytest.mark.parametrize(("wheel", "efficiency"), [(0.02, 0.9), (0.2, 0.9), (0.2, 0.8)])
+def test_a_motor_that_ends_within_the_cycle_against_lagrange_and_dop853(wheel, efficiency):
+    """The gear alone takes power: below 140 rad/s of the motor, and beyond 160, no torque depends on the speed."""
+    weight = ls.Load("rocker", torque=-12.0)
+    links = [ls.Link(*numbers) for numbers in (CRANK, ROD, ROCKER)]
+    scene = ls.Scene(ls.FourBar(*links, ground=0.2), 30.0, gravity=(0.0, -9.81), loads=[weight])
+    motor = ls.GovernedMotor(25.0, 140.0, 160.0, inertia=2e-3)
+    cycle = ls.steady_cycle(scene, motor, ratio=5.0, flywheel=wheel, efficiency=efficiency)
+    bodies = [oracle_motion.Body(*numbers) for numbers in (CRANK, ROD, ROCKER)]
+    machine = oracle_motion.OnMotor(
+        oracle_motion.FourBar(*bodies, 0.2, -9.81j, -12.0),
+        lambda speed: 25.0 * np.clip((160.0 - speed) / 20.0, 0.0, 1.0),
+        5.0, wheel, rotor=25.0 * 2e-3, efficiency=efficiency,
+    )  # fmt: skip
+    assert cycle.status.attrs["flag_meanings"].split()[int(cycle.status)] == "ok"
+    omega = machine.steady(float(cycle.omega2[0]) + 0.1, ANGLES, cycles=8)
+    np.testing.assert_allclose(cycle.omega2, omega, rtol=1e-9)
+
+
 def test_a_gear_takes_its_part_of_what_it_passes_on_either_way():
     """η·i·M(i·ω) = c·ω + T while the motor drives, i·M(i·ω)/η where the load drives it."""
     efficiency = xr.DataArray([1.0, 0.8], dims="gear")
