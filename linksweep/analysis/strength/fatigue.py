@@ -149,8 +149,9 @@ def _histories(scene: Scene, names: tuple[str, str], place: dict[str, Array]) ->
         extremes = brackets(angles, samples, scene.period)
         turning = turning_points(stress_at, extremes)
         for one, design in enumerate(designs):
-            history = turning[extremes.row == one]
-            if np.isfinite(samples[one]).all() and len(history):
+            own = extremes.row == one
+            history = turning[own] if own.any() else samples[one, :2]  # a constant has no extremes
+            if np.isfinite(samples[one]).all():
                 history[np.argmax(history)] = place["largest"][design]
                 history[np.argmin(history)] = place["least"][design]
                 yield int(design), history

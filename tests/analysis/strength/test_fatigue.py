@@ -109,6 +109,22 @@ def test_a_crank_that_does_not_turn_round_has_no_life():
     assert np.isnan(ds.life).all() and np.isnan(ds.damage).all()
 
 
+def test_a_constant_stress_has_no_cycles_and_lasts_for_ever():
+    """A steady force turns along with the crank; coupler and rocker, without mass, bear nothing."""
+    ds = ls.strength(bent(force=FORCE), STEEL)
+    np.testing.assert_allclose(ds.stress.sel(link="crank"), NOMINAL, rtol=1e-12)
+    for name, value in (("stress_cycles", 0.0), ("damage", 0.0), ("life", np.inf)):
+        np.testing.assert_array_equal(ds[name], value, err_msg=name)
+
+
+def test_a_whirling_crank_lasts_for_ever():
+    """Its stress is constant but for rounding errors."""
+    parts = ls.Bar(0.08, 0.02, 0.02, 7750.0), ls.Bar(0.22, 0.02, 0.02, 0.0), ls.Bar(0.18, 0.02, 0.02, 0.0)
+    ds = ls.strength(ls.Scene(ls.FourBar(*parts, ground=0.2), omega2=30.0), STEEL)
+    np.testing.assert_allclose(ds.stress.sel(link="crank"), 7750.0 * 30.0**2 * 0.08**2 / 2.0, rtol=1e-9)
+    assert np.isinf(ds.life).all() and (ds.stress_cycles == 0.0).all() and (ds.damage == 0.0).all()
+
+
 def test_a_missing_library_is_named_with_what_installs_it(monkeypatch):
     monkeypatch.setitem(sys.modules, "rainflow", None)
     with pytest.raises(ImportError, match=r'pip install "linksweep\[fatigue\]", or leave out the slope'):
