@@ -49,7 +49,8 @@ def peaks(
         slides (of a linkage's F16n and F16t their sum F16), the moments of slides between links, and the drive's torque
         or force.
     theta2 : int or array_like, default None
-        Count of crank angles, or angles [degree]: the largest of these samples is returned instead.
+        Count of crank angles, or angles [degree]: the largest of these samples is returned instead; in means each
+        stands for half the way to its neighbours.
     theta : int or array_like, default None
         Count of positions of a car in a loop, or positions [degree], in place of theta2.
     between : (float, float), default None

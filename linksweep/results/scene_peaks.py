@@ -30,6 +30,7 @@ from linksweep.results.compute import (
 )
 from linksweep.results.dataset import design_coordinates, flags, plain, provenance, variable
 from linksweep.results.direct_dataset import dataset_of
+from linksweep.results.over_time import weights_of
 from linksweep.results.peak_search.along_paths import SignalPeak
 from linksweep.results.peak_search.between import EVERYWHERE, NEVER, ONE, designs_on
 from linksweep.results.peak_search.exact import exact_peaks, of_designs_that_share, peaks_where, peaks_within
@@ -43,7 +44,7 @@ from linksweep.results.peak_search.singular.poles import with_dead_centres
 from linksweep.scene.at_sections import with_sections
 from linksweep.scene.dimensions import aligned, side_by_side
 from linksweep.scene.grid import in_order
-from linksweep.scene.pairs import changes, flat_index
+from linksweep.scene.pairs import Array, changes, flat_index
 from linksweep.scene.scene import Scene
 
 SUMMARIES, EXTREMES = ("mean", "rms", "bound", "samples"), ("peak", "max", "min")
@@ -212,8 +213,9 @@ def _of_samples(scene: Scene, angles: ArrayLike, items: list[Request], solver: s
     with_status = showing_status(sampled, signals)
     known_signals = {signal: signal if signal in with_status else where_ok(signal) for signal in signals}
     largest = {signal: Reduction("largest_sample", known_signals[signal]) for signal in signals}
-    pace = changing_pace(sampled)
-    averages = {} if pace else {p: Reduction(("mean", "mean_square")[p[1] - 1], of_ok[p[0]]) for p in powers}
+    pace, weights = changing_pace(sampled), np.ones(1) if grid.period else weights_of(grid.angles)
+    weighted = bool(pace) or (weights != 1.0).any()
+    averages = {} if weighted else {p: Reduction(("mean", "mean_square")[p[1] - 1], of_ok[p[0]]) for p in powers}
     reductions = tuple(dict.fromkeys([*largest.values(), *averages.values()]))
     request = planned(sampled, tuple(dict.fromkeys(r.name for r in reductions)), sampled.inputs.forms, solver)
     reduced = {}
@@ -225,26 +227,28 @@ def _of_samples(scene: Scene, angles: ArrayLike, items: list[Request], solver: s
         extremes[signal] = SignalPeak(value, angle, value, value)
     extremes = of_designs_that_share(sampled, extremes)
     averaged = {power: reduced[reduction][0] for power, reduction in averages.items()}
-    averaged |= _over_time(sampled, grid, powers, pace[0], solver) if pace else {}
+    averaged |= _over_time(sampled, grid, weights, powers, pace, solver) if weighted else {}
     # a search for where designs close takes longer than samples, whose status shows enough
     by_samples = scene.table.limits is not None
     assembly = Field((), np.zeros(())) if by_samples else assembly_of(scene)
     return Result(sampled, grid, assembly, by_samples, extremes, averaged)
 
 
-def _over_time(sampled: Scene, grid: Grid, powers: tuple[Power, ...], pace: str, solver: str) -> Averages:
-    """Return means of a grid's samples that are ok, each weighted by the time that the crank takes for it; NaN where it
-    stands still or turns back."""
+def _over_time(
+    sampled: Scene, grid: Grid, weights: Array, powers: tuple[Power, ...], pace: tuple[str, ...], solver: str
+) -> Averages:
+    """Return means of a grid's samples that are ok, each of its weight and of the time that the crank takes; NaN where
+    it stands still or turns back."""
     of_ok = known_names(sampled, tuple(name for name, _ in powers), where_ok)
-    fields, averages = compute(sampled, grid, tuple(dict.fromkeys([*of_ok.values(), pace])), solver=solver), {}
+    fields, averages = compute(sampled, grid, tuple(dict.fromkeys([*of_ok.values(), *pace])), solver=solver), {}
     for name, power in powers:
-        own, rate = fields[of_ok[name]], fields[pace]
-        dims = tuple(d for d in (*sampled.inputs.sizes, grid.dim) if d in {*own.dims, *rate.dims})
+        own, rate = fields[of_ok[name]], fields[pace[0]] if pace else Field((), np.ones(()))
+        dims = (*(d for d in sampled.inputs.sizes if d in {*own.dims, *rate.dims}), grid.dim)
         value, speed = aligned(own, dims), aligned(rate, dims)
         known = ~np.isnan(value + speed)
         stops = (known & (speed <= 0.0)).any(axis=-1) & (known & (speed >= 0.0)).any(axis=-1)
         with np.errstate(all="ignore"):
-            total, time = (np.where(known, value**n / np.abs(speed), 0.0).sum(axis=-1) for n in (power, 0))
+            total, time = (np.where(known, weights * value**n / np.abs(speed), 0.0).sum(axis=-1) for n in (power, 0))
             averages[name, power] = Field(dims[:-1], np.where(stops, np.nan, total / time))
     return averages
 

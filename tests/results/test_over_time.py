@@ -171,6 +171,37 @@ def test_the_heat_of_a_motor():
     assert float(result.motor_torque_rms) == pytest.approx(float(expected), rel=1e-9)
 
 
+FINE_AND_COARSE = np.r_[0.0:180.0, 180.0:361.0:10.0]
+"""On either half of a turn, even steps integrate what is even about its ends to all digits."""
+
+
+@pytest.mark.parametrize("theta2", [FINE_AND_COARSE, FINE_AND_COARSE[::-1]], ids=["upwards", "downwards"])
+@pytest.mark.parametrize("omega2", [MEAN, uneven], ids=["steady", "uneven"])
+def test_samples_at_uneven_angles_stand_for_half_the_way_to_their_neighbours(omega2, theta2):
+    scene = ls.Scene(LIGHT, omega2, loads=[ls.Load("crank", torque=lambda a: -4.0 - 6.0 * np.cos(np.radians(2.0 * a)))])
+    weight = (lambda angle: MEAN / uneven(np.degrees(angle))) if callable(omega2) else (lambda angle: 1.0)
+
+    def torque(angle):
+        return 4.0 + 6.0 * np.cos(2.0 * angle)
+
+    integrals = [quad(lambda x, n=n: torque(x) ** n * weight(x), 0.0, np.pi, epsabs=1e-12)[0] for n in range(3)]
+    mean, square = integrals[1] / integrals[0], integrals[2] / integrals[0]
+    peaks = ls.peaks(scene, ["T12_mean", "T12_rms", "omega3"], theta2=theta2)
+    assert float(peaks.T12_mean) == pytest.approx(mean, rel=1e-6)
+    assert float(peaks.T12_rms) == pytest.approx(np.sqrt(square), rel=1e-6)
+    motor = ls.motor_load(scene, ls.Motor((0.0, 900.0), (9.0, 9.0)), theta2=theta2)
+    assert float(motor.motor_torque_rms) == pytest.approx(np.sqrt(square), rel=1e-6)
+    assert float(ls.peaks(scene, ["T12_mean"], theta2=[30.0]).T12_mean) == pytest.approx(7.0, rel=1e-12)
+
+
+def test_even_samples_of_a_whole_turn_count_alike():
+    """However they are stated, and where they begin: to the last digit."""
+    for omega2 in (MEAN, uneven):
+        scene = replace(PRESS, omega2=omega2)
+        count, angles = (ls.peaks(scene, ["T12_rms"], theta2=each) for each in (90, np.arange(90) * 4.0))
+        assert float(count.T12_rms) == float(angles.T12_rms)
+
+
 def test_sizes_before_and_after_are_over_time():
     result = ls.compare(pressing(), pressing(), of=["F32_rms", "T12_ripple"], theta2=360)
     squared = over_time(lambda angle: pressed(angle) ** 2)

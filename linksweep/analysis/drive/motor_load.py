@@ -99,8 +99,9 @@ def motor_load(
         - `torque_margin_min` [N m] and `torque_margin_min_at` [degree]: the exact least margin of the continuous cycle,
           or between the least and the largest of several angles; -inf where the torque grows without bound
         - `reflected_inertia` [kg m²]: the rotor's inertia at the driven link, inertia·ratio²
-        - `motor_torque_rms` [N m]: root mean square over time, which heats the motor: of the samples at theta2, between
-          which a narrow load may lie. `effort_rms` of `linksweep.duty` is exact, of the torque on the driven link.
+        - `motor_torque_rms` [N m]: root mean square over time, which heats the motor: of the samples at theta2, each
+          for half the way to its neighbours, between which a narrow load may lie. `effort_rms` of `linksweep.duty` is
+          exact, of the torque on the driven link.
 
     Raises
     ------

@@ -18,6 +18,7 @@ from linksweep.engine.threads import limits_threads
 from linksweep.results.compute import angles_missing, part_of, require_dataset
 from linksweep.results.cylinders.multi_cylinder import MultiCylinder
 from linksweep.results.dataset import by_command, joined, with_units
+from linksweep.results.over_time import reach
 from linksweep.results.peak_search.paths import Part
 from linksweep.results.peaks import peaks
 from linksweep.results.sweep import sweep
@@ -112,12 +113,12 @@ def bearings(
     exponents = {pin: bearing.exponent for pin, bearing in fitted.items()}
     rotation = rotation_under_load(scene, forces, exponents, part)
     highest = peaks(scene, of=dict.fromkeys(forces.values()), between=part)
-    reach, speeds = _reach(cycle["theta2"], part), {pin: cycle[f"omega_{pin}"] for pin in links}
+    weights, speeds = _weights(cycle["theta2"], part), {pin: cycle[f"omega_{pin}"] for pin in links}
     parts = [
         {"F": cycle[forces[pin]]}
         | {"F_peak": highest[f"{forces[pin]}_peak"], "F_peak_at": highest[f"{forces[pin]}_peak_at"]}
         | _in_frames(cycle, *links[pin], scene.mechanism.journals[pin])
-        | journal_results(cycle, forces[pin], speeds[pin], abs(speeds[pin] / cycle["omega2"]) * reach, bearing)
+        | journal_results(cycle, forces[pin], speeds[pin], abs(speeds[pin] / cycle["omega2"]) * weights, bearing)
         | rotation.life(pin, bearing.capacity, bearing.exponent)
         for pin, bearing in fitted.items()
     ]
@@ -154,15 +155,9 @@ def _outputs(scene: Scene, pin: str, links: tuple[int, int]) -> list[str]:
     return [force, f"{force}x", f"{force}y", f"omega_{pin}", *frames]
 
 
-def _reach(angles: xr.DataArray, part: Part | None) -> xr.DataArray:
+def _weights(angles: xr.DataArray, part: Part | None) -> xr.DataArray:
     """Return weights of the angles: equal over a cycle; over a part of a turn, half the distances to the neighbours."""
-    if part is None:
-        return xr.ones_like(angles)
-    order = np.argsort(angles.values, kind="stable")
-    ordered = angles.values[order]
-    reach = np.empty(len(order))
-    reach[order] = np.diff(np.concatenate([ordered[:1], 0.5 * (ordered[1:] + ordered[:-1]), ordered[-1:]]))
-    return angles.copy(data=reach)
+    return xr.ones_like(angles) if part is None else angles.copy(data=reach(angles.values))
 
 
 def _in_frames(cycle: xr.Dataset, i: int, j: int, journal: int) -> dict[str, xr.DataArray]:
