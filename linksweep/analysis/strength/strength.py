@@ -160,7 +160,8 @@ class _Link:
     def results(self, factors: list[Number]) -> dict[str, Any]:
         """Return the results of the link by name, and its status."""
         coarse = self._peaks(*self._sections())
-        fine = [self._about(rank) for rank in (self._size(coarse).max((FIBRE, END)), -self._goodman(coarse))]
+        fatigue = (-safety.min(FIBRE) for safety in self._safeties(coarse))
+        fine = [self._about(rank) for rank in (self._size(coarse).max((FIBRE, END)), *fatigue)]
         close = self._peaks(_in_a_row(fine), xr.DataArray(1.0))
         ds = xr.Dataset({name: _in_a_row([coarse[name], close[name]]) for name in coarse if name != "status"})
         status = coarse["status"]
@@ -209,10 +210,12 @@ class _Link:
         largest, least = (ds["stress"].isel({END: k}) for k in range(2))
         return mean_and_amplitude(largest, least)
 
-    def _goodman(self, ds: xr.Dataset) -> xr.DataArray:
-        """Return the safety of each section by Goodman."""
-        strengths = self.material.endurance, self.material.tensile_strength
-        return fatigue_safety(*self._cycle(ds), *strengths).min(FIBRE)
+    def _safeties(self, ds: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray]:
+        """Return the safeties of each fibre by Goodman and by Soderberg."""
+        (mean, amplitude), steel = self._cycle(ds), self.material
+        goodman = fatigue_safety(mean, amplitude, steel.endurance, steel.tensile_strength)
+        soderberg = fatigue_safety(mean, amplitude, steel.endurance, steel.yield_strength)
+        return goodman, soderberg
 
     def _stress(self, ds: xr.Dataset) -> dict[str, xr.DataArray]:
         """Return the largest stress, its place and its angle."""
@@ -224,19 +227,17 @@ class _Link:
     def _fatigue(self, ds: xr.Dataset) -> dict[str, xr.DataArray]:
         """Return the least safeties, and the cycle of stress where that by Goodman is least."""
         mean, amplitude = self._cycle(ds)
-        steel = self.material
-        goodman = fatigue_safety(mean, amplitude, steel.endurance, steel.tensile_strength)
-        soderberg = fatigue_safety(mean, amplitude, steel.endurance, steel.yield_strength)
+        goodman, soderberg = self._safeties(ds)
         fibre = xr.DataArray(np.arange(len(FIBRES)), dims=FIBRE)
         places = mean, amplitude, ds["share"], ds["factor"], fibre
         with np.errstate(divide="ignore"):
             danger, mean, amplitude, share, factor, fibre = _at_largest(1.0 / goodman, *places)
             (other,) = _at_largest(1.0 / soderberg)
         results = {"fatigue_section": share, "stress_mean": mean, "stress_amplitude": amplitude}
-        if steel.slope is not None:
+        if self.material.slope is not None:
             ends = {"largest": mean + amplitude, "least": mean - amplitude}
             place = xr.Dataset({"share": share, "factor": factor, "fibre": fibre, **ends})
-            results |= life(self.scene, (self.names[0], self.names[1]), place, steel)
+            results |= life(self.scene, (self.names[0], self.names[1]), place, self.material)
         with np.errstate(divide="ignore"):
             return results | {"goodman_safety": 1.0 / danger, "soderberg_safety": 1.0 / other}
 

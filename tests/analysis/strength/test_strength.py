@@ -78,6 +78,19 @@ def test_the_worst_of_many_samples_is_no_worse(name):
             assert -1e-2 < float(one[f"{quantity}_safety"] / least) - 1.0 < 1e-9, (role, quantity)
 
 
+def test_the_section_worst_by_soderberg_is_its_own():
+    """A mean counts more than by Goodman; against 801 sections, between which the safety varies by less than 1e-5."""
+    sizes = (0.242, 0.0141, 0.0285), (0.694, 0.0349, 0.0908), (0.496, 0.0905, 0.0887)
+    machine = ls.FourBar(*(ls.Bar(*each, density=7800.0) for each in sizes), ground=0.9207)
+    scene = ls.Scene(machine, 20.6, gravity=(0.0, -9.81), loads=[ls.Load("rocker", torque=-219.2)])
+    sections = xr.DataArray(np.linspace(1e-9, 1.0 - 1e-9, 801), dims="section")
+    ds = ls.peaks(replace(scene, section=sections), of=["stress4_left", "stress4_right"])
+    ends = [(ds[f"stress4_{fibre}_max"], ds[f"stress4_{fibre}_min"]) for fibre in ("left", "right")]
+    worst = max(float(((top - low) / 360e6 + np.maximum(top + low, 0.0) / 470e6).max()) for top, low in ends)
+    safety = ls.strength(scene, STEEL, links="rocker").soderberg_safety.item()
+    assert safety == pytest.approx(1.0 / worst, rel=2e-5)
+
+
 def test_a_mean_in_compression_neither_helps_nor_harms():
     assert fatigue_safety(-100e6, 50e6, 100e6, 400e6) == 2.0
     assert fatigue_safety(100e6, 50e6, 100e6, 400e6) == pytest.approx(1.0 / (0.5 + 0.25), rel=1e-15)
