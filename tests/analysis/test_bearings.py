@@ -227,6 +227,8 @@ def test_load_diagrams_show_the_forces_of_bearings(frame):
         (lambda: ls.Bearing(diameter=-0.02), "diameter = -0.02 m: must be greater than 0"),
         (lambda: ls.Bearing(kind="needle"), "kind = 'needle': must be one of ball, roller"),
         (lambda: ls.load_spectrum(ls.sweep(PRESS, theta2=4)), "ds has no F, rotation_share, life_status: give what"),
+        (lambda: ls.load_spectrum(ls.bearings(PRESS).isel(theta2=slice(0, 100))), "ds has a part of its angles"),
+        (lambda: ls.load_spectrum(ls.bearings(PRESS).isel(theta2=5)), "ds has a part of its angles: give all that"),
     ],
 )
 def test_refusals(call, message):

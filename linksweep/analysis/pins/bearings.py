@@ -26,6 +26,8 @@ from linksweep.scene.designs.lazy import in_memory
 from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene
 
+WHOLE = 1e-9
+"""Difference from 1 that rounding may leave of the sum of all shares of a rotation."""
 FRAMES = ("ground", "journal", "bearing")
 SAMPLES = 720
 """Samples between the two ends of a part of a turn."""
@@ -187,7 +189,7 @@ def load_spectrum(ds: xr.Dataset, *, classes: int = 10) -> xr.Dataset:
     Raises
     ------
     ValueError
-        If the Dataset lacks F, rotation_share or life_status, or classes is no count.
+        If the Dataset lacks F, rotation_share or life_status, or some of its angles, or classes is no count.
 
     Examples
     --------
@@ -199,6 +201,9 @@ def load_spectrum(ds: xr.Dataset, *, classes: int = 10) -> xr.Dataset:
     require_dataset(ds, "ls.bearings")
     missing = [name for name in ("F", "rotation_share", "life_status") if name not in ds]
     refuse([f"ds has no {', '.join(missing)}: give what ls.bearings returns"] if missing else [])
+    shares = ds["rotation_share"].sum({"theta2"} & {*ds.dims})
+    whole = ((abs(shares - 1.0) < WHOLE) | (shares == 0.0)).all()  # 0 of a pin that does not turn
+    refuse([] if whole else ["ds has a part of its angles: give all that ls.bearings returns"])
     refuse(count_problems("classes", classes))
     require_memory(f"classes = {quote(classes)}", 8.0 * classes * ds.sizes.get("pin", 1))
     share, largest = xr.apply_ufunc(
