@@ -125,8 +125,8 @@ def speed_limit(scene: Scene, of: str, *, below: float, threads: int | None = No
     Raises
     ------
     ValueError
-        If the name is no force, the limit is not positive, the scene has friction or dampers (compute the peaks over an
-        array of speeds instead), branch="both", or no crank.
+        If the name is no force, the limit is not one positive number, the scene has friction or dampers (compute the
+        peaks over an array of speeds instead), branch="both", or no crank.
 
     Examples
     --------
@@ -145,6 +145,7 @@ def speed_limit(scene: Scene, of: str, *, below: float, threads: int | None = No
     require_one_branch(scene)
     refuse(quantity_problems("of", name, forces_of(scene), scene))
     below = checked_number("below", below, LIMITS[scene.table.quantity[name].units])
+    refuse(["below has dims: must be one number; give each limit by itself"] if np.ndim(below) else [])
     parts = scene.table.quantity[name].components
     unit_speed = replace(scene, omega2=_one_each(scene))
     squared, angle = _of_samples(unit_speed, parts, below), xr.DataArray(math.nan)
