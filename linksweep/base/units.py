@@ -52,7 +52,7 @@ KINDS = {
         ("velocity", "100 km/h", "m/s, cm/s, mm/s, km/h, mph, in/s, ft/s"),
         ("acceleration", "9.81 m/s^2", "m/s^2, cm/s^2, mm/s^2, in/s^2, ft/s^2, g0"),
         ("density", "7.75 g/cm^3", "kg/m^3, g/cm^3, lb/in^3, lb/ft^3, slug/ft^3, blob/in^3"),
-        ("pressure", "12 bar", "Pa, kPa, MPa, GPa, bar, mbar, psi, atm"),
+        ("pressure", "12 bar", "Pa, kPa, MPa, GPa, bar, mbar, psi, ksi, atm"),
         ("power", "1.5 kW", "W, kW, MW, mW, hp"),
         ("energy", "40 J", "J, kJ, MJ, mJ, kWh, cal"),
         ("spring_rate", "12 N/mm", "N/m, N/cm, N/mm, kN/m, lbf/in, lbf/ft"),
@@ -83,7 +83,7 @@ _SIZES = {
     "tonne": Fraction(1000), "lb": _POUND, "oz": _POUND / 16,
     "slug": _LBF / _FOOT, "blob": _LBF / _INCH,  # 1 lbf gives a blob, the inch's slug, 1 in/s^2
     "rad": Fraction(1), "deg": _PI / 180, "rev": 2 * _PI, "rpm": 2 * _PI / 60,
-    "lbf": _LBF, "kgf": _GRAVITY, "psi": _LBF / _INCH**2, "atm": Fraction(101325),
+    "lbf": _LBF, "kgf": _GRAVITY, "psi": _LBF / _INCH**2, "ksi": 1000 * _LBF / _INCH**2, "atm": Fraction(101325),
     "hp": 550 * _FOOT * _LBF, "kWh": Fraction(3_600_000), "cal": Fraction("4.184"), "%": Fraction(1, 100),
 }  # fmt: skip
 """Sizes of units in SI, of angles in rad: all are exact, but for those with pi, of which these are 50 digits."""

@@ -48,6 +48,7 @@ EXACT = [
     ("1 g0", "acceleration", G0),
     ("7.75 g/cm^3", "density", Fraction(7750)),
     ("0.28 lb/in^3", "density", Fraction("0.28") * POUND / INCH**3),
+    ("36 ksi", "pressure", 36_000 * LBF / INCH**2),
     ("10 %", "dimensionless", Fraction("0.1")),
     ("1_500 rad/s", "angular_velocity", Fraction(1500)),
     ("  7 rad s^-1 ", "angular_velocity", Fraction(7)),
