@@ -10,6 +10,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.base.frozen import cached_beside
+from linksweep.base.validate import refuse
 from linksweep.base.version import installed_version
 from linksweep.engine.run import Field, Grid
 from linksweep.results.direct_dataset import Axis, dataset_of, variable_of
@@ -84,10 +85,16 @@ def variable(field: Field, units: str, long_name: str, order: Iterable[str]) -> 
 
 def with_units(results: Mapping[str, tuple[Any, str, str]]) -> dict[str, xr.DataArray]:
     """Return arrays by name, of values, unit and description each."""
-    return {
-        name: xr.DataArray(values).assign_attrs(units=units, long_name=text)
-        for name, (values, units, text) in results.items()
-    }
+    arrays = {name: xr.DataArray(values) for name, (values, _, _) in results.items()}
+    require_own_names(arrays)
+    return {name: arrays[name].assign_attrs(units=units, long_name=text) for name, (_, units, text) in results.items()}
+
+
+def require_own_names(arrays: Mapping[str, xr.DataArray]) -> None:
+    """Raise ValueError where a result has the name of a dim of designs, whose labels would stand in its place."""
+    dims = {dim for array in arrays.values() for dim in array.dims}
+    taken = "is the name of a result, and of a dimension of the designs; rename the dimension"
+    refuse([f"{name}: {taken}" for name in arrays if name in dims])
 
 
 def flags(long_name: str, meanings: Iterable[str]) -> dict:

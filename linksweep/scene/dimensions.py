@@ -25,6 +25,8 @@ RESULTS = (
     "balance", "order", "parameter", "limit", "link", "plane", "criterion", "load_class", "step",
 )  # fmt: skip
 """Names of variables and dims in results besides the quantities."""
+SUMMARY = re.compile(r"(.+?)_(?:peak|max|min|mean|rms|ripple|bound|samples|amplitude|phase|cos|sin)(?:_.*)?")
+"""Names of what results hold of a quantity, such as F32_peak_at."""
 
 Arrays = dict[str, xr.DataArray]
 """DataArrays by the path of the parameter."""
@@ -131,13 +133,18 @@ def _name_problems(dim: object, index: str, sharing: Arrays, arrays: Arrays, res
         yield f'{path} has a dimension "{dim}": rename it; did you mean "{index}"?'
     elif UNNAMED.fullmatch(str(dim)):
         yield f'{path} has a dimension "{dim}", which nobody named: rename it, "{index}" of angles, "design" of designs'
-    elif dim in results and [dim, *sharing] != [SECTION, SECTION]:  # `section` itself lies along that dim
+    elif _of_results(str(dim), results) and [dim, *sharing] != [SECTION, SECTION]:  # `section` lies along its own dim
         yield f'{path} has a dimension "{dim}": that is the name of a result; rename it'
     elif dim in sharing and sharing[str(dim)].dims != (dim,):
         advice = 'give it one of another name, as in xarray.DataArray([...], dims="k")'
         yield f"{dim} has dimensions {sharing[str(dim)].dims}: beside that of its own name it has no other; {advice}"
     elif dim in arrays and arrays[dim].dims != (dim,):
         yield f'{path} has a dimension "{dim}": that is the name of another parameter; rename it'
+
+
+def _of_results(name: str, results: Collection[str]) -> bool:
+    summary = SUMMARY.fullmatch(name)
+    return name in results or bool(summary and summary[1] in results)
 
 
 def _length_problems(dim: object, sharing: Arrays) -> Iterator[str]:

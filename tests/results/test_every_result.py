@@ -54,6 +54,8 @@ RESULTS = {
     "tolerance": lambda path: ls.tolerance(PRESS, {"ground": "js9"}, of="F32_peak", n=4),
 }
 SLOW = {"size_links"}
+APART = {"study", "open_study", "screen", "tolerance", "pareto", "run_up", "steady_cycle"}
+"""Results that need a file or scenes of one design, or take seconds each."""
 FILES = (
     "bearings",
     "check",
@@ -112,6 +114,34 @@ def test_no_design_lies_along_a_dim_that_a_result_has(results):
             ValueError, match=f'omega2 has a dimension "{dim}": that is the name of a result; rename it'
         ):
             replace(PRESS, omega2=xr.DataArray([10.0, 20.0], dims=dim))
+
+
+@pytest.mark.parametrize(("name", "result"), [("peaks", "F32_peak"), ("flywheel", "speed"), ("size_pins", "diameter")])
+def test_no_dim_of_designs_replaces_a_result(name, result, monkeypatch):
+    with pytest.raises(ValueError, match=f'"?{result}"?: (that )?is the name of a result'):
+        of_designs_along(result, name, monkeypatch)
+
+
+@pytest.mark.long
+def test_results_do_not_depend_on_the_name_of_the_dim_of_designs(results, monkeypatch):
+    """Each result has the values that it has over a dim "k", or the dim's name is refused, and never is replaced."""
+    for name in results.keys() - APART:
+        plain = of_designs_along("k", name, monkeypatch)
+        for result in map(str, plain.data_vars):
+            try:
+                values = of_designs_along(result, name, monkeypatch)[result]
+            except ValueError:  # also xarray's MergeError
+                continue
+            np.testing.assert_array_equal(values, plain[result])
+
+
+def of_designs_along(dim: str, name: str, monkeypatch) -> xr.Dataset:
+    """Return a result of two speeds over a dim with labels."""
+    scene = replace(PRESS, omega2=xr.DataArray([28.0, 30.0], {dim: [7, 8]}, dim))
+    dragged = replace(scene, loads=DRAGGED.loads)
+    for designs, of in (("PRESS", scene), ("DESIGNS", scene), ("DRAGGED", dragged)):
+        monkeypatch.setitem(globals(), designs, of)
+    return RESULTS[name](None)
 
 
 @pytest.mark.long

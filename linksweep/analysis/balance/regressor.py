@@ -25,7 +25,7 @@ from linksweep.engine.threads import limits_threads
 from linksweep.mechanisms import Mechanism
 from linksweep.mechanisms.balance import MassDistribution
 from linksweep.results.compute import quantity_problems, requested, require
-from linksweep.results.dataset import joined, provenance
+from linksweep.results.dataset import joined, provenance, require_own_names
 from linksweep.results.sweep import sweep
 from linksweep.scene.scene import Scene
 
@@ -94,6 +94,7 @@ def regressor(scene: Scene, of: Iterable[str], *, theta2: Any = 720, threads: in
         column = xr.dot(spread, inverse, dim=PROBE).transpose(..., "parameter")
         table |= {name: column.assign_attrs(units=quantity[name].units, long_name=long_name)}
         table |= {f"{name}_of_loads": massless[name]}
+    require_own_names(table)
     table["value"].attrs = {"long_name": "value of each parameter in the scene, in its `unit`"}
     table["value"] = table["value"].assign_coords(unit=("parameter", [UNITS[label.split(".")[-1]] for label in values]))
     attributes = provenance(scene, f"linksweep.regressor(scene, {names})", {})

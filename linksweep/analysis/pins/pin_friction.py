@@ -24,7 +24,7 @@ from linksweep.chains.between_links import force_name
 from linksweep.engine.threads import limits_threads
 from linksweep.physics.bearing import friction_circle
 from linksweep.results.compute import require_one_branch
-from linksweep.results.dataset import flags, joined, with_units
+from linksweep.results.dataset import flags, joined, require_own_names, with_units
 from linksweep.results.sweep import sweep
 from linksweep.scene.loads.load import Load
 from linksweep.scene.scene import Scene
@@ -123,9 +123,13 @@ def pin_friction(
     forces = [name for name in cycle.data_vars if name not in (*scene.mechanism.kinematics(), "status")]
     cycle = cycle.assign({name: cycle[name].where(~fast).assign_attrs(cycle[name].attrs) for name in forces})
     agreement = flags("whether pin friction and pin forces agree; forces are NaN where they do not", MEANINGS)
-    cycle["convergence"] = fast.astype(np.int8).assign_attrs(agreement)
-    cycle["efficiency"] = _efficiency(with_friction, cycle["friction_loss"].sum("pin", skipna=False), theta2)
-    return cycle.assign_attrs(command=f"linksweep.pin_friction(scene, ..., theta2={theta2})")
+    loss = cycle["friction_loss"].sum("pin", skipna=False)
+    own = {
+        "convergence": fast.astype(np.int8).assign_attrs(agreement),
+        "efficiency": _efficiency(with_friction, loss, theta2),
+    }
+    require_own_names(own)
+    return cycle.assign(own).assign_attrs(command=f"linksweep.pin_friction(scene, ..., theta2={theta2})")
 
 
 def _rubbing(scene: Scene, pins: Mapping[str, Bearing]) -> dict[str, RubbingPin]:

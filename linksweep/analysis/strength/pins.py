@@ -23,7 +23,7 @@ from linksweep.base.checked_number import checked_number
 from linksweep.base.validate import Number, Rule, choice_problems, quote, refuse
 from linksweep.chains.between_links import force_name
 from linksweep.engine.threads import limits_threads
-from linksweep.results.dataset import by_command, flags, joined, with_units
+from linksweep.results.dataset import by_command, flags, joined, require_own_names, with_units
 from linksweep.results.peaks import peaks
 from linksweep.scene.designs.lazy import in_memory
 from linksweep.scene.dimensions import argument_problems
@@ -108,6 +108,7 @@ def size_pins(
         }
     )
     governing = known.argmax("criterion", keep_attrs=False).astype(np.int8)
+    require_own_names({"governing": governing})
     governing.attrs = flags("what decides the diameter", limits)
     attributes = worst.attrs | by_command("linksweep.size_pins(scene, ...)")
     return xr.Dataset({**results, "governing": governing, "status": worst["status"]}, attrs=attributes)
