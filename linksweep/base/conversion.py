@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from linksweep.base.units import quantity
-from linksweep.base.validate import UNITS, as_float, is_array, is_quantity
+from linksweep.base.validate import UNITS, Rule, as_float, is_array, is_quantity, number_problems, refuse
 
 
 def to_float64(value: Any, kind: str) -> Any:
@@ -42,12 +42,16 @@ def _of_text(text: str, kind: str) -> Any:
         return text
 
 
-def all_to_float64(values: Any, kind: str) -> Any:
-    """Return a list of numbers, or an array without its labels, converted as by `to_float64`."""
+def all_to_float64(path: str, values: Any, kind: str) -> Any:
+    """Return a list of numbers, or an array without its labels, converted as by `to_float64`.
+
+    Raises ValueError for an array of quantities of another kind, whose unit numpy would leave out.
+    """
     if isinstance(values, tuple | list):
         return [to_float64(value, kind) for value in values]
     converted = to_float64(values, kind)
-    return converted.values if is_array(converted) and not is_quantity(converted) else converted
+    refuse(number_problems(path, converted, Rule(kind)) if is_quantity(converted) else [])
+    return converted.values if is_array(converted) else converted
 
 
 def _array(array: Any, kind: str) -> Any:

@@ -133,7 +133,7 @@ def over_speed(scene: Scene, of: str, *, speeds: Any, below: float | None = None
     'crank speed $\\\\omega_2$ [rad/s]'
     """
     require(scene, "drives")
-    values = np.asarray(all_to_float64(speeds, "angular_velocity"), dtype=float)
+    values = np.asarray(all_to_float64("speeds", speeds, "angular_velocity"), dtype=float)
     omega2 = xr.DataArray(values, dims="omega2")
     (of,) = requested("of", of, scene)
     at_rest = replace(scene, omega2=0.0)

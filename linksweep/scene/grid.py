@@ -55,8 +55,9 @@ def _uniform(count: int, period: float, dim: str, geared: Geared) -> Grid:
 def _angles(values: Any, name: str) -> np.ndarray:
     """Return a list of angles as float64 [degree]."""
     refuse(unit_problems(name, getattr(values, "attrs", {}).get("units"), "angle"))
+    converted = all_to_float64(name, values, "angle")
     try:
-        angles = np.asarray(all_to_float64(values, "angle"))
+        angles = np.asarray(converted)
     except ValueError:  # rows that differ in length
         angles = np.empty(0)
     if angles.dtype.kind not in "fiu" or angles.ndim > 1 or angles.size == 0:

@@ -51,7 +51,8 @@ class Job:
     @cached_property
     def result(self) -> dict[str, Any]:
         """Identity of the result, equal for jobs that give equal numbers: digest of the scene, and the request."""
-        options = {word: np.asarray(all_to_float64(value, "angle")).tolist() for word, value in self.options.items()}
+        every = self.options.items()
+        options = {word: np.asarray(all_to_float64(word, value, "angle")).tolist() for word, value in every}
         return {"scene": scene_digest(self.scene), "request": {"of": self.of, **options}}
 
     def designs(self, block: Block) -> int:

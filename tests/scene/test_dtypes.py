@@ -214,6 +214,25 @@ def test_other_constructors_and_functions_accept_pint():
     assert limits[0] == limits[1]
 
 
+@pytest.mark.parametrize("labelled", [False, True])
+@pytest.mark.parametrize(
+    ("call", "path"),
+    [
+        (lambda q, _: ls.sweep(ls.example("press"), q), "theta2"),
+        (lambda q, _: ls.bearings(ls.example("press"), theta2=q), "theta2"),
+        (lambda q, path: ls.study(ls.example("press"), path / "s.nc", of=["T12"], theta2=q), "theta2"),
+        (lambda q, _: ls.MultiCylinder(engine(), [0.0, 180.0]).sweep(q), "theta2"),
+        (lambda q, _: ls.plot.over_speed(ls.example("press"), "F32", speeds=q), "speeds"),
+        (lambda q, _: ls.Motor(q, [3.0, 0.0]), "speeds"),
+        (lambda q, _: ls.Motor([0.0, 90.0], q), "torques"),
+    ],
+)
+def test_lists_of_quantities_of_another_kind_are_refused(call, path, labelled, tmp_path):
+    wrong = UNITS.Quantity(np.array([0.0, 90.0]), "kg")
+    (line,) = refusal(call, xr.DataArray(wrong, dims="k") if labelled else wrong, tmp_path)
+    assert line.startswith(f"{path} has the unit kilogram: must be a number in ")
+
+
 def test_angles_and_positions_of_another_unit_are_refused():
     radians = xr.DataArray([0.0, 1.0, 2.0], {"theta2": ("theta2", [0.0, 2.0, 4.0], {"units": "rad"})}, "theta2")
     (line,) = refusal(lambda: replace(ls.example("press"), loads=[ls.Load("rocker", torque=radians)]))

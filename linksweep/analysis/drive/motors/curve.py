@@ -54,7 +54,8 @@ class Motor(AnyMotor):
         ByContent.__post_init__(self)
         problems = field_problems(self) + unit_attribute_problems(numbers(self))
         for name, rule in POINTS.items():
-            points = np.ravel(np.asarray(all_to_float64(getattr(self, name), rule.kind), dtype=object)).tolist()
+            values = all_to_float64(name, getattr(self, name), rule.kind)
+            points = np.ravel(np.asarray(values, dtype=object)).tolist()
             problems += array_unit_problems(name, getattr(self, name), rule.kind)
             problems += [p for k, point in enumerate(points, 1) for p in number_problems(f"{name}[{k}]", point, rule)]
             normalise(self, **{name: tuple(points)})
