@@ -266,6 +266,11 @@ def choice_problems(path: str, value: Any, allowed: Iterable[str]) -> list[str]:
     return [f"{path} = {quote(value)}: must be one of {', '.join(allowed)}{did_you_mean(value, allowed)}"]
 
 
+def one_text_problems(path: str, value: Any, meaning: str) -> list[str]:
+    """Return a problem unless a value is a text, with what it is to mean."""
+    return [] if isinstance(value, str) else [f"{path} = {quote(value)}: must be {meaning}"]
+
+
 def count_problems(path: str, value: Any) -> list[str]:
     """Return a problem unless a value is a whole number, 1 or more; its owner checks None."""
     whole = isinstance(value, int | np.integer) and not isinstance(value, bool)
@@ -311,6 +316,14 @@ def closest(word: Any, known: Iterable[str]) -> str:
     close += difflib.get_close_matches(word, spelled, n=1, cutoff=0.6)
     close += [name for name in spelled if f"{name}_".startswith(f"{word}_") or word.startswith(f"{name}_")]
     return spelled[close[0]] if close else ""
+
+
+def listed(value: Any) -> list[Any]:
+    """Return what a value holds as a list; a text, or what holds nothing, as the only one in it."""
+    try:
+        return [value] if isinstance(value, str) else list(value)
+    except TypeError:  # also an array without dims, which is an Iterable by its class
+        return [value]
 
 
 def repeated(items: Iterable[Item]) -> list[Item]:

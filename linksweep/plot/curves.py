@@ -29,6 +29,7 @@ from linksweep.plot.kit.colors import (
 from linksweep.plot.kit.drawings import drawing_of_results
 from linksweep.plot.kit.style import axes_or_new, crank_angles, grid
 from linksweep.plot.kit.with_peaks import with_peaks
+from linksweep.results.compute import requested
 from linksweep.results.origin.in_shown_units import units_of
 
 if TYPE_CHECKING:
@@ -174,8 +175,7 @@ def torque(ds: xr.Dataset, *, ax: Axes | None = None) -> Axes:
 
 def force_names(ds: xr.Dataset, names: Iterable[str] | None) -> list[str]:
     if names is not None:
-        listed = [names] if isinstance(names, str) else names
-        chosen = list(dict.fromkeys(signals.force_named(ds, name) for name in listed))
+        chosen = list(dict.fromkeys(signals.force_named(ds, name) for name in requested("of", names)))
         if chosen:
             return chosen
     forces = drawing_of_results(ds).forces

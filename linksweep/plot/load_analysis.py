@@ -16,7 +16,7 @@ from linksweep.plot.curves import shade_gaps
 from linksweep.plot.kit import signals
 from linksweep.plot.kit.colors import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION
 from linksweep.plot.kit.style import axes_or_new, crank_angles, grid
-from linksweep.results.compute import requested, require, require_dataset
+from linksweep.results.compute import requested_one, require, require_dataset
 from linksweep.results.origin.in_shown_units import results_in_shown_units
 from linksweep.results.peaks import peaks
 from linksweep.scene.scene import Scene
@@ -135,7 +135,7 @@ def over_speed(scene: Scene, of: str, *, speeds: Any, below: float | None = None
     require(scene, "drives")
     values = np.asarray(all_to_float64("speeds", speeds, "angular_velocity"), dtype=float)
     omega2 = xr.DataArray(values, dims="omega2")
-    (of,) = requested("of", of, scene)
+    of = requested_one("of", of, scene)
     at_rest = replace(scene, omega2=0.0)
     name = f"{of}_peak"
     worst = peaks(replace(scene, omega2=omega2.assign_coords(omega2=omega2)), of=[of])[name]

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 import xarray as xr
 
-from linksweep.base.validate import refuse
+from linksweep.base.validate import one_text_problems, refuse
 from linksweep.plot.kit import signals
 from linksweep.plot.kit.colors import BLUE, GREEN, ORANGE, PURPLE, VERMILION
 from linksweep.plot.kit.locus import SIZE, draw_locus
 from linksweep.plot.kit.style import axes_or_new, grid
 from linksweep.plot.kit.with_peaks import with_peaks
-from linksweep.results.compute import require_dataset
+from linksweep.results.compute import requested, require_dataset
 from linksweep.results.origin.in_shown_units import in_shown_units
 from linksweep.results.origin.machine_of_results import name_in_results
 
@@ -53,6 +53,7 @@ def hodograph(ds: xr.Dataset, of: str = "Fs", *, ax: Axes | None = None) -> Axes
     >>> ls.plot.hodograph(ls.sweep(ls.example("press"), of=["Fsx", "Fsy"])).get_xlabel()
     'shaking force $F_{sx}$ [N]'
     """
+    refuse(one_text_problems("of", of, "the name of a force, such as Fs"))
     of = name_in_results(ds, of)
     ds = with_peaks(ds, of)
     missing = [part for part in (f"{of}x", f"{of}y") if part not in ds]
@@ -98,8 +99,7 @@ def orders(ds: xr.Dataset, of: Iterable[str] | None = None, *, ax: Axes | None =
     """
     require_dataset(ds, "ls.orders")
     known = [str(key).removesuffix(ENDING) for key in ds.data_vars if str(key).endswith(ENDING)]
-    listed = [of] if isinstance(of, str) else [] if of is None else list(of)
-    names = known if of is None else [name_in_results(ds, name) for name in listed]
+    names = known if of is None else [name_in_results(ds, name) for name in requested("of", of)]
     refuse([] if known else ["ds has no amplitudes: take what ls.orders returns"])
     refuse([f"of: there are no orders of {name}; there are {', '.join(known)}" for name in {*names} - {*known}])
     ds = in_shown_units(ds)

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.base.fields import PairField
-from linksweep.base.validate import Rule, name_problems, quote, radian_problems, refuse
+from linksweep.base.validate import Rule, listed, name_problems, quote, radian_problems, refuse
 from linksweep.chains.between_links import force_name
 from linksweep.chains.rows.pins import Pins
 from linksweep.engine.quantity import unless_jammed
@@ -38,12 +38,26 @@ def requested(path: str, names: Any, scene: Any = None) -> list[str]:
     Of a scene, the letter of a pin is the force in it: "B" is F32, "B_rms" is F32_rms. A letter that several joints
     share is refused with their names.
     """
-    listed = [names] if isinstance(names, str) else list(names) if isinstance(names, Iterable) else [names]
-    wrong = [name for name in listed if not isinstance(name, str)]
-    refuse([f'{path} = {wrong[0]!r}: must be names of quantities, such as ["F32", "T12"]'] if wrong else [])
+    every = listed(names)
+    wrong = [name for name in every if not isinstance(name, str)]
+    refuse([f'{path} = {quote(wrong[0])}: must be names of quantities, such as ["F32", "T12"]'] if wrong else [])
     pins = scene.mechanism.pins if isinstance(scene, Scene) else {}
-    refuse([problem for name in listed for problem in _shared_pin(path, name, pins)])
-    return list(dict.fromkeys(force_in(name, pins) for name in listed))
+    refuse([problem for name in every for problem in _shared_pin(path, name, pins)])
+    return list(dict.fromkeys(force_in(name, pins) for name in every))
+
+
+def requested_some(path: str, names: Any, scene: Any = None) -> list[str]:
+    """Return the requested names as `requested` does; raise ValueError where there are none."""
+    some = requested(path, names, scene)
+    refuse([] if some else [f"{path}: is empty; name one or more"])
+    return some
+
+
+def requested_one(path: str, name: Any, scene: Any = None) -> str:
+    """Return the one name that is requested; raise ValueError for several, and for none."""
+    names = requested(path, name, scene)
+    refuse([] if len(names) == 1 else [f"{path} = {quote(name)}: must be one name"])
+    return names[0]
 
 
 def force_in(name: str, pins: Pins) -> str:

@@ -8,7 +8,7 @@ from html import escape
 from typing import TYPE_CHECKING, overload
 
 from linksweep.base.text_table import aligned
-from linksweep.base.validate import name_problems, refuse
+from linksweep.base.validate import name_problems, one_text_problems, refuse
 from linksweep.engine.trace.plan import plan
 from linksweep.results.compute import counts_without_angles, require_scene
 from linksweep.results.dataset import STATUS_AT_LONG_NAME, STATUS_LONG_NAME
@@ -116,6 +116,7 @@ class QuantityTable(Sequence[AvailableQuantity]):
         QuantityTable
             Table of these quantities.
         """
+        refuse(one_text_problems("search", words, "words, as in one text"))
         parts = words.casefold().split()
         return QuantityTable(tuple(row for row in self.rows if all(part in str(row).casefold() for part in parts)))
 

@@ -317,6 +317,54 @@ def test_all_names_that_are_wrong_are_said_at_once():
     assert len(refusal(ls.peaks, SCENE, ["T21", "F32", "thteta4"])) == 2
 
 
+PRESS = ls.example("press")
+NAMES = "must be names of quantities"
+
+
+@pytest.mark.parametrize(
+    ("request_", "message"),
+    [
+        (lambda: ls.sweep(PRESS, 8, of=np.array(3)), f"of = array(3): {NAMES}"),
+        (lambda: ls.tolerance(PRESS, {"ground": "h9"}, of=3), f"of = 3: {NAMES}"),
+        (lambda: ls.sensitivities(PRESS, 3), f"of = 3: {NAMES}"),
+        (lambda: ls.objective(PRESS, {"ground": (0.19, 0.21)}, minimize="F32_peak", of=3), f"of = 3: {NAMES}"),
+        (lambda: ls.tolerance(PRESS, {"ground": "h9"}, of=[]), "of: is empty; name one or more"),
+        (lambda: ls.sensitivities(PRESS, []), "of: is empty; name one or more"),
+        (lambda: ls.sensitivities(PRESS, to=[]), "to: is empty; name one or more"),
+        (lambda: ls.compare(PRESS, PRESS, of=[]), "of: is empty; name one or more"),
+        (lambda: ls.breakdown(PRESS, []), "of: is empty; name one or more"),
+        (lambda: ls.run_down(PRESS, of=[]), "of: is empty; name one or more"),
+        (lambda: ls.plot.over_speed(PRESS, [], speeds=[10, 20]), "of = []: must be one name"),
+        (lambda: ls.plot.over_speed(PRESS, ["F32", "F43"], speeds=[10, 20]), "of = ['F32', 'F43']: must be one name"),
+        (lambda: ls.speed_limit(PRESS, ["F32", "F43"], below=1e3), "of = ['F32', 'F43']: must be one name"),
+        (lambda: ls.plot.forces(ls.sweep(PRESS, 24), 3), f"of = 3: {NAMES}"),
+        (lambda: ls.plot.orders(ls.orders(ls.sweep(PRESS, 24, of="Fsx"), "Fsx", n=3), 3), f"of = 3: {NAMES}"),
+        (lambda: ls.plot.bearing(ls.sweep(PRESS, 24), ["F32"]), "of = ['F32']: must be the name of a force"),
+        (lambda: ls.plot.hodograph(ls.sweep(PRESS, 24), ["Fs"]), "of = ['Fs']: must be the name of a force"),
+        (
+            lambda: ls.plot.breakdown(ls.breakdown(PRESS, "F32", theta2=24), ["F32"]),
+            "of = ['F32']: must be the name of a force",
+        ),
+        (lambda: ls.with_counterweights(PRESS, None), "counterweights = None: must be a Counterweight"),
+        (lambda: ls.save_drawing(PRESS, "a.svg", curves=3), "curves[1] = 3: must be (link, distance [m], angle"),
+        (lambda: ls.quantities(PRESS, ["F32"]), "search = ['F32']: must be words"),
+    ],
+)
+def test_lists_of_names_that_are_none(request_, message):
+    (text,) = refusal(request_)
+    assert text.startswith(message)
+
+
+def test_names_are_taken_from_an_iterator():
+    names, made = ["F32_peak", "F43_peak"], {"ground": ls.Tolerance(-1e-4, 1e-4)}
+    assert ls.tolerance(PRESS, made, of=iter(names), n=4).identical(ls.tolerance(PRESS, made, of=names, n=4))
+    bearings = [ls.choose_bearings(PRESS, life=1e3, series=series) for series in (iter(["62"]), ["62"], "62")]
+    assert all(each.identical(bearings[1]) for each in bearings)
+    for some in (names, ["bending_moment3_peak"]):  # also of a beam, for which sections are added
+        results = [ls.sensitivities(PRESS, of, to=["ground"]) for of in (iter(some), some)]
+        assert results[0].identical(results[1])
+
+
 # -------------------------------------------------------------------------------- input that is accepted
 
 

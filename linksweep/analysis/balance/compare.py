@@ -11,7 +11,7 @@ import xarray as xr
 
 from linksweep.base.validate import refuse
 from linksweep.engine.threads import limits_threads
-from linksweep.results.compute import quantity_problems, requested, require_scene
+from linksweep.results.compute import quantity_problems, requested_some, require_scene
 from linksweep.results.dataset import joined, origin_attributes
 from linksweep.results.over_time import mean_over_time
 from linksweep.results.sweep import sweep
@@ -64,7 +64,7 @@ def compare(before: Scene, after: Scene, *, of: Any, theta2: int = 720, threads:
     """
     require_scene(before)
     require_scene(after)
-    sizes = sizes_named("of", before, requested("of", of, before))
+    sizes = sizes_named("of", before, requested_some("of", of, before))
     outputs = [*(name for name, _ in sizes), before.mechanism.pace]
     sides = [_sizes(scene, sweep(scene, theta2, of=outputs), sizes) for scene in (before, after)]
     table = {name: joined([side[name] for side in sides], "balance", ("before", "after")) for name in sides[0]}

@@ -15,7 +15,7 @@ import xarray as xr
 from linksweep.base.checked_number import checked_number, unit_attribute_problems
 from linksweep.base.equality import ByContent
 from linksweep.base.fields import POLAR_POINT, field_problems, numbers, of_kind, parameter
-from linksweep.base.validate import Number, Rule, choice_problems, quote, refuse
+from linksweep.base.validate import Number, Rule, choice_problems, listed, quote, refuse
 from linksweep.mechanisms.balance import MassDistribution
 from linksweep.results.compute import require
 from linksweep.scene.dimensions import argument_problems
@@ -97,7 +97,7 @@ def with_counterweights(scene: Scene, counterweights: Iterable[Counterweight]) -
     (0.496, 0.0)
     """
     require(scene, "bodies")
-    weights = [counterweights] if isinstance(counterweights, Counterweight) else list(counterweights)
+    weights = listed(counterweights)
     strange = [weight for weight in weights if not isinstance(weight, Counterweight)]
     refuse([f"counterweights = {quote(weight)}: must be a Counterweight" for weight in strange])
     masses = scene.mechanism.masses()

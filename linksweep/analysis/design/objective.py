@@ -337,7 +337,7 @@ def objective(
     refuse([] if known else [f"constraint = {quote(constraint)}: must be {bound}"])
     if isinstance(target, str):
         (target,) = requested(path, target, scene)
-    names = _names(scene, target, constraint, None if of is None else list(of))
+    names = _names(scene, target, constraint, None if of is None else requested("of", of, scene))
     measure = partial(_measured, target, 1.0 if path == "minimize" else -1.0)
     if isinstance(subject_to, Mapping):
         subject_to = by_name("subject_to", subject_to, scene)

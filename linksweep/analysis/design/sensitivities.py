@@ -15,7 +15,7 @@ from linksweep.analysis.pins.bearing import Bearing
 from linksweep.base.validate import UNITS, name_problems, quote, refuse
 from linksweep.engine.run import Field
 from linksweep.engine.threads import limits_threads
-from linksweep.results.compute import angles_of, quantity_problems, requested, require_scene
+from linksweep.results.compute import angles_of, quantity_problems, requested_some, require_scene
 from linksweep.results.dataset import design_coordinates, flags, index_coordinate, provenance, status_attributes
 from linksweep.results.derivatives.of_peaks import MEANINGS, OK
 from linksweep.results.derivatives.samples import sample_derivatives
@@ -103,11 +103,11 @@ def sensitivities(
     """
     require_scene(scene)
     angles = angles_of(scene, theta2=theta2, theta=theta)
-    scene = with_sections(in_memory(scene), of)
+    names = list(scene.mechanism.peak_quantities(scene.drive)) if of is None else requested_some("of", of, scene)
+    scene = with_sections(in_memory(scene), names)
     paths = parameters_of(scene, to)
     if angles is not None:
-        return _of_samples(scene, angles, of, paths)
-    names = list(scene.mechanism.peak_quantities(scene.drive)) if of is None else requested("of", of, scene)
+        return _of_samples(scene, angles, names, paths)
     conditions = checked_conditions(scene, fluctuation, pins)
     refuse([problem for name in names for problem in result_problems(scene, "of", name, conditions)])
     variables: dict[str, Any] = {}
@@ -122,7 +122,7 @@ def parameters_of(scene: Scene, to: str | Iterable[str] | None = None) -> tuple[
     own = free(scene)
     if to is None:
         return tuple(path for path in own if not number_problem(scene, path))
-    paths = requested("to", to)
+    paths = requested_some("to", to)
     known = [problem for path in paths for problem in name_problems("to", path, own)]
     refuse(known or [problem for path in paths if (problem := number_problem(scene, path))])
     return tuple(paths)
@@ -176,9 +176,8 @@ def labelled(scene: Scene, variables: Mapping[str, Any], paths: tuple[str, ...],
     return xr.Dataset(variables, coordinates | labels, provenance(scene, command, coordinates))
 
 
-def _of_samples(scene: Scene, angles: Any, of: Any, paths: tuple[str, ...]) -> xr.Dataset:
+def _of_samples(scene: Scene, angles: Any, names: list[str], paths: tuple[str, ...]) -> xr.Dataset:
     """Return the derivatives of quantities at crank angles."""
-    names = list(scene.mechanism.peak_quantities(scene.drive)) if of is None else requested("of", of, scene)
     known = [name for name in scene.table.quantity if name != "cond"]
     refuse([problem for name in names for problem in quantity_problems("of", name, known, scene)])
     grid = scene.grid(angles)

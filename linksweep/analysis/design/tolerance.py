@@ -31,7 +31,7 @@ from linksweep.analysis.pins.bearing import Bearing
 from linksweep.base.units import quantity
 from linksweep.base.validate import count_problems, quote, refuse
 from linksweep.engine.threads import limits_threads
-from linksweep.results.compute import requested, require_scene
+from linksweep.results.compute import requested_some, require_scene
 from linksweep.results.dataset import flags
 from linksweep.results.derivatives.of_peaks import MEANINGS
 from linksweep.scene.at_sections import with_sections
@@ -123,9 +123,9 @@ def tolerance(
     [0.871, 0.129]
     """
     require_scene(scene)
-    scene = with_sections(in_memory(scene), of)
+    names = requested_some("of", of, scene)
+    scene = with_sections(in_memory(scene), names)
     choices = _choices(scene, tolerances)
-    names = requested("of", of, scene)
     conditions = checked_conditions(scene, fluctuation, pins)
     problems = [problem for name in names for problem in result_problems(scene, "of", name, conditions)]
     refuse([*problems, *([] if n == 0 else count_problems("n", n))])

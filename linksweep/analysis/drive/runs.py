@@ -19,7 +19,7 @@ from linksweep.base.fields import declared
 from linksweep.base.frozen import with_sound
 from linksweep.base.validate import Number, Rule, refuse
 from linksweep.chains.between_links import force_name
-from linksweep.results.compute import quantity_problems, requested
+from linksweep.results.compute import quantity_problems, requested_some
 from linksweep.results.dataset import design_coordinates, flags, provenance, with_units
 from linksweep.scene.pairs import Array, by_row
 from linksweep.scene.scene import Scene
@@ -111,7 +111,7 @@ def checked(scene: Scene, start: Any, turns: Any, of: Names) -> tuple[Number, fl
     """Return the start [degree], the most turns and the names of quantities, as they are to be."""
     start, turns = checked_number("start", start, START), checked_number("turns", turns, TURNS)
     refuse([f"turns: has {np.ndim(turns)} dims: give one number for all designs"] if np.ndim(turns) else [])
-    names = requested("of", pins_and_torque(scene) if of is None else of, scene)
+    names = requested_some("of", pins_and_torque(scene) if of is None else of, scene)
     unknown = [problem for name in names for problem in quantity_problems("of", name, scene.table.quantity, scene)]
     refuse(unknown)
     return start, turns, tuple(names)

@@ -19,7 +19,7 @@ from linksweep.base.validate import refuse
 from linksweep.chains.between_links import pair_of
 from linksweep.engine.threads import limits_threads
 from linksweep.results.changed import quantities_with
-from linksweep.results.compute import quantity_problems, requested, require
+from linksweep.results.compute import quantity_problems, requested_some, require
 from linksweep.results.dataset import joined
 from linksweep.results.sweep import sweep
 from linksweep.scene.scene import Scene
@@ -99,7 +99,7 @@ def breakdown(
 def _names(scene: Scene, of: Any) -> tuple[str, ...]:
     if of is None:
         return scene.mechanism.peak_quantities(scene.drive)
-    names = requested("of", of, scene)
+    names = requested_some("of", of, scene)
     refuse([problem for name in names for problem in quantity_problems("of", name, forces_of(scene), scene)])
     return tuple(names)
 

@@ -19,7 +19,7 @@ from linksweep.analysis.pins.bearing import EXPONENTS, Bearing, checked_pins
 from linksweep.analysis.pins.bearings import bearings
 from linksweep.analysis.pins.catalogue import SIZES, DeepGroove, catalogue
 from linksweep.base.units import quantity
-from linksweep.base.validate import as_float, choice_problems, name_problems, quote, refuse
+from linksweep.base.validate import as_float, choice_problems, listed, name_problems, quote, refuse
 from linksweep.engine.threads import limits_threads
 from linksweep.results.dataset import by_command, flags, with_units
 from linksweep.scene.scene import Scene
@@ -118,6 +118,7 @@ def choose_bearings(
     """
     links = checked_pins(scene, None)
     hours = _hours(life)
+    series = listed(series)
     refuse(choice_problems("kind", kind, EXPONENTS) + _problems(static_safety, series))
     bores, outsides = _limits("bore", bore, links, 0.0), _limits("outside", outside, links, np.inf)
     pins = {pin: Bearing(capacity=1.0, kind=kind) for pin in links}
@@ -180,13 +181,12 @@ def _hours(life: Any) -> float:
     return hours
 
 
-def _problems(static_safety: Any, series: Any) -> list[str]:
+def _problems(static_safety: Any, series: list[Any]) -> list[str]:
     number = as_float(static_safety)
     sound = number is not None and 0.0 < number < np.inf
     problems = [] if sound else [f"static_safety = {quote(static_safety)}: must be a number greater than 0"]
-    names = [series] if isinstance(series, str) or not isinstance(series, Iterable) else list(series)
-    problems += [] if names else ["series: is empty; name one or more of 60, 62, 63"]
-    return problems + [line for name in names for line in choice_problems("series", name, SIZES)]
+    problems += [] if series else ["series: is empty; name one or more of 60, 62, 63"]
+    return problems + [line for name in series for line in choice_problems("series", name, SIZES)]
 
 
 def _limits(path: str, limit: Any, links: Iterable[str], missing: float) -> xr.DataArray:

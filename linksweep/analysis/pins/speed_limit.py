@@ -21,7 +21,7 @@ from linksweep.base.checked_number import checked_number
 from linksweep.base.validate import Rule, refuse
 from linksweep.engine.threads import limits_threads
 from linksweep.results.changed import quantities_with
-from linksweep.results.compute import quantity_problems, requested, require, require_one_branch
+from linksweep.results.compute import quantity_problems, requested, requested_one, require, require_one_branch
 from linksweep.results.dataset import design_coordinates, origin_attributes, with_units
 from linksweep.results.peaks import peaks
 from linksweep.results.sweep import sweep
@@ -140,7 +140,7 @@ def speed_limit(scene: Scene, of: str, *, below: float, threads: int | None = No
     1000.0
     """
     require(scene, "drives")
-    (name,) = requested("of", of, scene)[:1] or [""]
+    name = requested_one("of", of, scene)
     refuse(_problems(scene))
     require_one_branch(scene)
     refuse(quantity_problems("of", name, forces_of(scene), scene))

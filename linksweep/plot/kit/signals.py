@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from linksweep.base.validate import refuse
+from linksweep.base.validate import one_text_problems, refuse
 from linksweep.chains.between_links import force_name, pair_of, reaction
 from linksweep.plot.kit.drawings import drawing_of_results, efforts
 from linksweep.scene.grid import whole_turns
@@ -69,6 +69,7 @@ def has_pin(ds: xr.Dataset, pin: str) -> bool:
 
 def force_named(ds: xr.Dataset, name: str) -> str:
     """Return the name of a force, or of the one in a pin: "B" is F32."""
+    refuse(one_text_problems("of", name, "the name of a force, such as F32"))
     joints = drawing_of_results(ds).joints
     return force_name(*joints[name]) if name in joints else name
 

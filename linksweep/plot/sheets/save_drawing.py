@@ -10,7 +10,7 @@ import xarray as xr
 
 from linksweep.base.checked_number import checked_number, checked_pair
 from linksweep.base.fields import POLAR_POINT
-from linksweep.base.validate import Rule, choice_problems, flag_problems, quote, refuse
+from linksweep.base.validate import Rule, choice_problems, flag_problems, listed, quote, refuse
 from linksweep.files.atomic import ending_of, whole
 from linksweep.files.netcdf import scene_of
 from linksweep.plot.kit.drawings import drawing_of
@@ -102,9 +102,9 @@ def save_drawing(
 def _points(scene: Scene, curves: Any) -> list[Curve]:
     """Return the points of curves, checked."""
     roles = {body.role: body.number for body in scene.mechanism.bodies}
-    listed = [curves] if isinstance(curves, tuple) and curves and isinstance(curves[0], str) else list(curves)
+    every = [curves] if isinstance(curves, tuple) and curves and isinstance(curves[0], str) else listed(curves)
     points = []
-    for k, item in enumerate(listed, 1):
+    for k, item in enumerate(every, 1):
         path = f"curves[{k}]"
         sound = isinstance(item, tuple | list) and len(item) == 3
         refuse([] if sound else [f"{path} = {quote(item)}: must be (link, distance [m], angle [degree])"])
