@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import xarray as xr
 
+from linksweep.base.validate import count_problems, refuse
 from linksweep.plot.kit import signals
 from linksweep.plot.kit.colors import BLUE, VERMILION
 from linksweep.plot.kit.drawings import joints_of
@@ -63,6 +64,7 @@ def balance(before: Scene, after: Scene, *, theta2: int = 720) -> Figure:
     """
     require_scene(before)
     require_scene(after)
+    refuse(count_problems("theta2", theta2))
     drawing = joints_of(before.mechanism)
     drive = before.mechanism.drives[before.drive]
     pins = drawing.pin_forces

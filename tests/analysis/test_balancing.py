@@ -341,6 +341,22 @@ def test_refusals_of_objectives(call, message):
     assert message in line
 
 
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda angles: ls.compare(PRESS, PRESS, of=["F32_peak"], theta2=angles),
+        lambda angles: ls.best_counterweights(PRESS, {"Fs_rms": 1.0}, radius=0.06, theta2=angles),
+        lambda angles: ls.flywheel(PRESS, fluctuation=0.02, theta2=angles),
+        lambda angles: ls.plot.balance(PRESS, PRESS, theta2=angles),
+    ],
+)
+def test_a_count_of_angles_is_no_list_of_angles(call):
+    """Peaks and means of two angles are none of the cycle."""
+    for angles in ([0, 90], (0, 90), np.array([0.0, 90.0])):
+        (line,) = refusal(call, angles)
+        assert line == f"theta2 = {angles!r}: must be a whole number, 1 or more"
+
+
 # ------------------------------------------------------------------------------------------------- plot
 
 

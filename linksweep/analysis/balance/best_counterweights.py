@@ -25,7 +25,7 @@ from linksweep.analysis.balance.compare import sizes_named
 from linksweep.analysis.balance.counterweights import Counterweight, by_link
 from linksweep.analysis.balance.regressor import OF_LINK, regressor
 from linksweep.base.checked_number import checked_number
-from linksweep.base.validate import Rule, name_problems, quote, refuse
+from linksweep.base.validate import Rule, count_problems, name_problems, quote, refuse
 from linksweep.engine.threads import limits_threads
 from linksweep.results.compute import by_name, require
 from linksweep.results.sweep import sweep
@@ -124,6 +124,7 @@ def best_counterweights(
     require(scene, "bodies")
     if designs := [*design_sizes(scene), *scene.mechanism.both_branches]:
         refuse([f"scene has designs over {', '.join(designs)}: give one, as ls.scene_at(scene, ...)"])
+    refuse(count_problems("theta2", theta2))
     sizes = _weights(scene, minimize)
     carriers = scene.mechanism.parts
     grounded = [body.role for body in scene.mechanism.bodies if body.on_ground and body.role in carriers]

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from linksweep.base.validate import refuse
+from linksweep.base.validate import count_problems, refuse
 from linksweep.engine.threads import limits_threads
 from linksweep.results.compute import quantity_problems, requested_some, require_scene
 from linksweep.results.dataset import joined, origin_attributes
@@ -64,6 +64,7 @@ def compare(before: Scene, after: Scene, *, of: Any, theta2: int = 720, threads:
     """
     require_scene(before)
     require_scene(after)
+    refuse(count_problems("theta2", theta2))
     sizes = sizes_named("of", before, requested_some("of", of, before))
     outputs = [*(name for name, _ in sizes), before.mechanism.pace]
     sides = [_sizes(scene, sweep(scene, theta2, of=outputs), sizes) for scene in (before, after)]

@@ -27,7 +27,7 @@ from linksweep.analysis.drive.duty import steady_problems
 from linksweep.analysis.drive.piecewise import piecewise
 from linksweep.analysis.drive.wittenbauer import NAMES, Turning, ahead
 from linksweep.base.checked_number import checked_number
-from linksweep.base.validate import Number, Rule, quote, refuse
+from linksweep.base.validate import Number, Rule, count_problems, quote, refuse
 from linksweep.engine.threads import limits_threads
 from linksweep.engine.trace.derivatives import derivative_of
 from linksweep.results.compute import require
@@ -123,7 +123,7 @@ def flywheel(
     30.63 to 32.20 rad/s
     """
     require(one_cylinder(scene), "drives")
-    refuse(_problems(one_cylinder(scene), fluctuation, inertia))
+    refuse(_problems(one_cylinder(scene), fluctuation, inertia) + count_problems("theta2", theta2))
     if inertia is None:
         fluctuation = checked_number("fluctuation", fluctuation, FLUCTUATION)
         stalls = [f"fluctuation = {quote(fluctuation)}: must be less than 2"]  # else it stands still, or turns back
