@@ -326,6 +326,16 @@ def listed(value: Any) -> list[Any]:
         return [value]
 
 
+def limits_in(ends: Any) -> tuple[float, float] | None:
+    """Return the two limits (least, most), infinite for None; None where they are none, or both open."""
+    if not isinstance(ends, tuple | list) or len(ends) != 2 or ends[0] is ends[1] is None:
+        return None
+    low, high = (
+        open_end if end is None else as_float(end) for end, open_end in zip(ends, (-math.inf, math.inf), strict=True)
+    )
+    return None if low is None or high is None or not low <= high else (low, high)
+
+
 def repeated(items: Iterable[Item]) -> list[Item]:
     """Return what stands more than once, each once."""
     return [item for item, count in Counter(items).items() if count > 1]

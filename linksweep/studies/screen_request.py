@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from linksweep.base.validate import as_float, count_problems, is_quantity, name_problems, quote, refuse
+from linksweep.base.validate import count_problems, is_quantity, limits_in, name_problems, quote, refuse
 from linksweep.base.version import installed_version
 from linksweep.results.compute import by_name, requested
 from linksweep.scene.at_sections import link_of
@@ -71,20 +70,10 @@ def _limits(subject_to: Any) -> dict[str, tuple[float, float]]:
     example = 'as in {"F32_peak": (None, 900.0)}'
     if subject_to is not None and not isinstance(subject_to, Mapping):
         refuse([f"subject_to = {quote(subject_to)}: must give (least, most) by name, {example}"])
-    limits = {name: _limit(ends) for name, ends in (subject_to or {}).items()}
+    limits = {name: limits_in(ends) for name, ends in (subject_to or {}).items()}
     must = f"must be (least, most), numbers or one None, {example}"
     refuse([f"subject_to: {k} = {quote(subject_to[k])}: {must}" for k, limit in limits.items() if limit is None])
     return {str(name): limit for name, limit in limits.items() if limit is not None}
-
-
-def _limit(ends: Any) -> tuple[float, float] | None:
-    """Return a limit's two ends, infinite for None; None where they are none."""
-    if not isinstance(ends, tuple | list) or len(ends) != 2 or ends[0] is ends[1] is None:
-        return None
-    low, high = (
-        open_end if end is None else as_float(end) for end, open_end in zip(ends, (-math.inf, math.inf), strict=True)
-    )
-    return None if low is None or high is None or not low <= high else (low, high)
 
 
 def _edges(name: str, edges: Any) -> np.ndarray:

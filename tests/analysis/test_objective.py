@@ -352,6 +352,8 @@ def test_a_limit_of_a_force_alone_is_that_of_its_peak():
         ({"swing": 50}, "must be"),
         ({"swing": (None, None)}, "must be"),
         ({"T12_peak": (None, "25 N m")}, "must be .low, high., numbers or one None"),
+        ({"F12_peak": (None, np.nan)}, "F12_peak = .None, nan.: must be .low, high., numbers or one None"),
+        ({"F12_peak": (356.0, 354.0)}, "F12_peak = .356.0, 354.0.: must be .low, high., numbers or one None"),
     ],
 )
 def test_constraints_that_are_none_are_refused(bounds, words):

@@ -298,6 +298,7 @@ POUNDS = pint.UnitRegistry().Quantity(np.array([60.0, 75.0]), "lbf")
         ({"subject_to": {"F32_peak": 900.0}}, "subject_to: F32_peak = 900.0: must be (least, most), numbers or one"),
         ({"subject_to": {"F32_peak": (2.0, 1.0)}}, "subject_to: F32_peak = (2.0, 1.0): must be (least, most)"),
         ({"subject_to": {"F32_peak": (None, None)}}, "subject_to: F32_peak = (None, None): must be (least, most)"),
+        ({"subject_to": {"F32_peak": (None, np.nan)}}, "subject_to: F32_peak = (None, nan): must be (least, most)"),
         ({"subject_to": ["F32_peak"]}, "subject_to = ['F32_peak']: must give (least, most) by name"),
         ({"bins": {"F32_peak": [1.0, 1.0]}}, "bins: F32_peak = [1.0, 1.0]: must be rising numbers"),
         ({"bins": {"F32_peak": POUNDS}}, "bins: F32_peak = <Quantity([60. 75.], 'force_pound')>: must be rising "),

@@ -16,7 +16,7 @@ import xarray as xr
 
 from linksweep.analysis.design.conditions import USUAL, Conditions
 from linksweep.analysis.design.result_derivatives import Derived, derived, result_problems, result_value, whole_name
-from linksweep.base.validate import as_float, quote, refuse
+from linksweep.base.validate import as_float, limits_in, quote, refuse
 from linksweep.scene.parameters import replaced
 from linksweep.scene.scene import Scene
 
@@ -79,9 +79,8 @@ def checked_bounds(scene: Scene, subject_to: Any, conditions: Conditions = USUAL
         refuse([f'subject_to = {quote(subject_to)}: must be bounds by result, as in {{"swing": (50, None)}}'])
     problems = [problem for name in subject_to for problem in result_problems(scene, "subject_to", name, conditions)]
     for name, ends in subject_to.items():
-        pair = isinstance(ends, tuple | list) and len(ends) == 2
-        sound = pair and all(end is None or as_float(end) is not None for end in ends) and tuple(ends) != (None, None)
-        problems += [] if sound else [f"subject_to.{name} = {quote(ends)}: must be (low, high), numbers or one None"]
+        must = "must be (low, high), numbers or one None"
+        problems += [f"subject_to.{name} = {quote(ends)}: {must}"] if limits_in(ends) is None else []
     refuse(problems)
     return {whole_name(scene, name): (as_float(low), as_float(high)) for name, (low, high) in subject_to.items()}
 
