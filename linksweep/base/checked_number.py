@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
+import numpy as np
+
 from linksweep.base.conversion import to_float64
 from linksweep.base.fields import PairField, numbers_in
 from linksweep.base.units import text_problems, unit_problems
@@ -23,6 +25,13 @@ def checked_number(path: str, value: Any, rule: Rule) -> Number:
     refuse(text_problems(path, number, rule.kind) if isinstance(number, str) else [])
     refuse(number_problems(path, number, rule) or array_unit_problems(path, number, rule.kind))
     return number
+
+
+def one_number(path: str, value: Any, rule: Rule) -> float:
+    """Return a number as `checked_number` does; raise ValueError for an array of several."""
+    number = checked_number(path, value, rule)
+    refuse([f"{path}: has {np.ndim(number)} dims: give one number for all designs"] if np.ndim(number) else [])
+    return float(number)
 
 
 def checked_pair(path: str, value: Any, kind: PairField) -> tuple[Number, Number]:

@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
+from linksweep.analysis.drive.flywheel import FLUCTUATION, checked_fluctuation
 from linksweep.analysis.pins.bearing import Bearing, bearing_problems
 from linksweep.analysis.pins.life_derivatives import LIFE
+from linksweep.base.checked_number import one_number
 from linksweep.base.validate import refuse
 from linksweep.scene.scene import Scene
 
@@ -53,7 +55,7 @@ def life_of(name: str) -> tuple[str, str]:
 
 
 def checked_conditions(scene: Scene, fluctuation: Any, pins: Any) -> Conditions:
-    """Return conditions; ValueError for bearings that do not fit the scene."""
-    conditions = Conditions(fluctuation, pins)
+    """Return conditions; ValueError for no fluctuation of one number, and for bearings that do not fit the scene."""
+    conditions = Conditions(checked_fluctuation(one_number("fluctuation", fluctuation, FLUCTUATION)), pins)
     refuse(conditions.problems(scene))
     return conditions

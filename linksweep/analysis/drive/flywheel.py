@@ -125,9 +125,7 @@ def flywheel(
     require(one_cylinder(scene), "drives")
     refuse(_problems(one_cylinder(scene), fluctuation, inertia) + count_problems("theta2", theta2))
     if inertia is None:
-        fluctuation = checked_number("fluctuation", fluctuation, FLUCTUATION)
-        stalls = [f"fluctuation = {quote(fluctuation)}: must be less than 2"]  # else it stands still, or turns back
-        refuse(stalls if np.any(fluctuation >= 2.0) else [])
+        fluctuation = checked_fluctuation(fluctuation)
     else:
         inertia = checked_number("inertia", inertia, INERTIA)
     refuse(argument_problems(one_cylinder(scene).arrays, fluctuation=fluctuation, inertia=inertia))
@@ -139,6 +137,13 @@ def flywheel(
     arrays = _arrays(steady, known, cycle[index], number, inertia is None)
     results = {name: (arrays[name], *text) for name, text in TEXTS.items()}
     return cycle[["status"]].assign(with_units(results)).assign_attrs(command="linksweep.flywheel(scene, ...)")
+
+
+def checked_fluctuation(value: Any) -> Number:
+    """Return coefficients of fluctuation; ValueError for one at which the crank stands still, or turns back."""
+    fluctuation = checked_number("fluctuation", value, FLUCTUATION)
+    refuse([f"fluctuation = {quote(fluctuation)}: must be less than 2"] if np.any(fluctuation >= 2.0) else [])
+    return fluctuation
 
 
 def _problems(scene: Scene, fluctuation: Any, inertia: Any) -> list[str]:

@@ -12,7 +12,8 @@ from linksweep.analysis.drive.drive_train import drive_train
 from linksweep.analysis.drive.motion_in_time import LASTS, REACHED, SETTLES, Run
 from linksweep.analysis.drive.motors.direct_current import DCMotor
 from linksweep.analysis.drive.motors.motor import AnyMotor
-from linksweep.analysis.drive.runs import Designs, Names, checked, described, one_part, turned
+from linksweep.analysis.drive.runs import Designs, Names, checked, described, turned
+from linksweep.base.checked_number import one_number
 from linksweep.base.validate import Number, Rule, quote, refuse
 from linksweep.engine.threads import limits_threads
 from linksweep.engine.time_steps import GIVEN_UP
@@ -105,7 +106,7 @@ def run_down(
     15.0 s, 20.0 turns
     """
     require(scene, "drives")
-    scene, until = in_memory(scene), one_part(until, UNTIL)
+    scene, until = in_memory(scene), one_number("until", until, UNTIL)
     refuse([f"until = {quote(until)}: must be less than 1"] if until >= 1.0 else [])
     start, turns, names = checked(scene, start, turns, of)
     train = drive_train(scene, NO_MOTOR if motor is None else motor, ratio, flywheel, efficiency, start)

@@ -12,7 +12,8 @@ from linksweep.analysis.drive.drive_train import drive_train
 from linksweep.analysis.drive.motion_in_time import LASTS, NOT_STARTED, REACHED, SETTLES, STOPS, Run
 from linksweep.analysis.drive.motors.motor import AnyMotor
 from linksweep.analysis.drive.operating_point import operating_speed
-from linksweep.analysis.drive.runs import Designs, Names, checked, described, fed, one_part, turned
+from linksweep.analysis.drive.runs import Designs, Names, checked, described, fed, turned
+from linksweep.base.checked_number import one_number
 from linksweep.base.validate import Number, Rule
 from linksweep.engine.threads import limits_threads
 from linksweep.engine.time_steps import GIVEN_UP
@@ -114,7 +115,7 @@ def run_up(
     F32 up to 238 N on the way
     """
     require(scene, "drives")
-    scene, until = in_memory(scene), one_part(until, UNTIL)
+    scene, until = in_memory(scene), one_number("until", until, UNTIL)
     start, turns, names = checked(scene, start, turns, of)
     designs = Designs(scene, drive_train(scene, motor, ratio, flywheel, efficiency, start), start)
     usual, top = operating_speed(designs), designs.top_speed

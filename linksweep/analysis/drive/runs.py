@@ -14,7 +14,7 @@ from linksweep.analysis.drive.drive_train import DriveTrain, lost_part
 from linksweep.analysis.drive.motion_in_time import ANGLE, HEAT, LOSS, SPEED, WORK, Crank, Drive, Run
 from linksweep.analysis.drive.motors.motor import AnyMotor
 from linksweep.analysis.drive.peaks_in_time import peaks_in_time
-from linksweep.base.checked_number import checked_number
+from linksweep.base.checked_number import checked_number, one_number
 from linksweep.base.fields import declared
 from linksweep.base.frozen import with_sound
 from linksweep.base.validate import Number, Rule, refuse
@@ -109,19 +109,11 @@ class Designs:
 
 def checked(scene: Scene, start: Any, turns: Any, of: Names) -> tuple[Number, float, tuple[str, ...]]:
     """Return the start [degree], the most turns and the names of quantities, as they are to be."""
-    start, turns = checked_number("start", start, START), checked_number("turns", turns, TURNS)
-    refuse([f"turns: has {np.ndim(turns)} dims: give one number for all designs"] if np.ndim(turns) else [])
+    start, turns = checked_number("start", start, START), one_number("turns", turns, TURNS)
     names = requested_some("of", pins_and_torque(scene) if of is None else of, scene)
     unknown = [problem for name in names for problem in quantity_problems("of", name, scene.table.quantity, scene)]
     refuse(unknown)
     return start, turns, tuple(names)
-
-
-def one_part(until: Any, rule: Rule) -> float:
-    """Return the part of a speed until which cranks run, one number for all designs."""
-    until = checked_number("until", until, rule)
-    refuse([f"until: has {np.ndim(until)} dims: give one number for all designs"] if np.ndim(until) else [])
-    return until
 
 
 def pins_and_torque(scene: Scene) -> list[str]:

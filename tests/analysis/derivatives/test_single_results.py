@@ -5,7 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import xarray as xr
 from long import long_but
+from refusals import refusal
 
 import linksweep as ls
 from linksweep.scene.parameters import free, replaced
@@ -175,3 +177,34 @@ def test_rises_that_come_again_in_each_turn_of_the_cycle_do_not_tie(turns):
     for name in names:
         assert int(ds[f"{name}_status"]) == 0
         assert np.abs(ds[f"{name}_derivative"].values) < 1e-13 * float(ds[name])
+
+
+# ------------------------------------------------------------------------- the fluctuation of a flywheel
+
+
+@pytest.mark.parametrize(
+    ("fluctuation", "message"),
+    [
+        ("abc", 'fluctuation = "abc": must be'),
+        (None, "fluctuation = None: must be a number"),
+        (math.nan, "fluctuation = nan: must be finite and greater than 0"),
+        (0.0, "fluctuation = 0: must be greater than 0"),
+        (2.0, "fluctuation = 2.0: must be less than 2"),
+        (xr.DataArray([0.01, 0.02], dims="k"), "fluctuation: has 1 dims: give one number for all designs"),
+    ],
+)
+def test_a_fluctuation_that_is_none_is_refused_whatever_is_asked_for(fluctuation, message):
+    press, may_be = ls.example("press"), {"ground": (0.19, 0.21)}
+    for call in (
+        lambda: ls.sensitivities(press, ["F32_peak"], to=["ground"], fluctuation=fluctuation),
+        lambda: ls.tolerance(press, {"ground": "h9"}, of="F32_peak", fluctuation=fluctuation),
+        lambda: ls.objective(press, may_be, minimize="F32_peak", fluctuation=fluctuation),
+    ):
+        (line,) = refusal(call)
+        assert line.startswith(message)
+
+
+def test_a_fluctuation_is_a_text_too():
+    press, of = ls.example("press"), ["flywheel_inertia"]
+    text, number = (ls.sensitivities(press, of, to=["ground"], fluctuation=each) for each in ("5 %", 0.05))
+    assert text.identical(number)
