@@ -29,9 +29,7 @@ def checked_number(path: str, value: Any, rule: Rule) -> Number:
 
 def one_number(path: str, value: Any, rule: Rule) -> float:
     """Return a number as `checked_number` does; raise ValueError for an array of several."""
-    number = checked_number(path, value, rule)
-    refuse([f"{path}: has {np.ndim(number)} dims: give one number for all designs"] if np.ndim(number) else [])
-    return float(number)
+    return _alone(path, checked_number(path, value, rule))
 
 
 def checked_pair(path: str, value: Any, kind: PairField) -> tuple[Number, Number]:
@@ -40,6 +38,17 @@ def checked_pair(path: str, value: Any, kind: PairField) -> tuple[Number, Number
     refuse(kind.problems(path, pair))
     refuse(unit_attribute_problems(numbers_in(path, pair, kind)))
     return pair
+
+
+def one_pair(path: str, value: Any, kind: PairField) -> tuple[float, float]:
+    """Return two numbers, each as `one_number` does."""
+    first, second = checked_pair(path, value, kind)
+    return _alone(f"{path}[1]", first), _alone(f"{path}[2]", second)
+
+
+def _alone(path: str, number: Number) -> float:
+    refuse([f"{path}: has {np.ndim(number)} dims: give one number for all designs"] if np.ndim(number) else [])
+    return float(number)
 
 
 def unit_attribute_problems(parameters: Iterable[tuple[str, Number, str]]) -> list[str]:

@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
+from linksweep.base.checked_number import one_pair
 from linksweep.base.conversion import to_float64
+from linksweep.base.fields import POLAR_POINT
 from linksweep.base.validate import choice_problems, flag_problems, refuse
 from linksweep.files.netcdf import scene_of
 from linksweep.mechanisms.drawing import Block, Drawing, Rail
@@ -94,6 +96,7 @@ def draw_machine(
 ) -> Axes:
     """Draw a machine as `mechanism` does, with the curve of its point over a part of the turn, or all of it."""
     refuse(flag_problems("forces", forces))
+    point = None if point is None else one_pair("point", point, POLAR_POINT)
     drawing = drawing_with_point(scene, link)
     angle = crank_angle(theta2)
     cycle = positions(scene, drawing, [angle], part)
@@ -112,8 +115,8 @@ def draw_machine(
     _loads(ax, draw_loads(ax, loads, ends, half_side(drawing, shape), scale), system)
     _forces(ax, acting, {name: shape.pins[drawing.start_of(name)] for name in acting}, scale, system)
     _names(ax, shape)
-    if point or not drawing.carrier.end:
-        _name(ax, shape.point, "P" if point else f"$G_{drawing.carrier.number}$")
+    if point is not None or not drawing.carrier.end:
+        _name(ax, shape.point, "P" if point is not None else f"$G_{drawing.carrier.number}$")
     show_lengths(ax, system)
     ax.set_title(f"$\\theta_2$ = {signals.angle_text(angle)}", loc="left")
     return ax

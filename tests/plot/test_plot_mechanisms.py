@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from drawn import boxes, closed_figures, line, page_hides_nothing, plt, size_of, texts  # noqa: F401
+from refusals import refusal
 
 import linksweep as ls
 from linksweep import plot
@@ -84,6 +85,28 @@ def test_slider_crank_is_drawn_to_scale(branch, offset, angle):
     assert np.linalg.norm(points(ax, "_coupler curve") - P, axis=1).min() < 1e-12
     text = {f"offset {abs(offset):g} m"} if offset else set()
     assert set(texts(ax)) == {"A", "B", "C", "P"} | text
+
+
+@pytest.mark.parametrize(
+    ("point", "message"),
+    [
+        ((-0.1, 0.0), "point[1] = -0.1 m: must be at least 0; for a point on the other side turn its angle"),
+        ((np.nan, 0.0), "point[1] = nan m: must be finite and at least 0"),
+        (0, "point = 0: must be a pair (distance in m, angle in degrees)"),
+        ([], "point = []: must be a pair (distance in m, angle in degrees)"),
+        ((0.1,), "point = (0.1,): must be a pair (distance in m, angle in degrees)"),
+        ((xr.DataArray([0.1, 0.2], dims="k"), 0.0), "point[1]: has 1 dims: give one number"),
+    ],
+)
+def test_a_point_that_is_none_is_refused(point, message):
+    for draw in (plot.mechanism, plot.animate):
+        (line,) = refusal(draw, ls.example("press"), point=point)
+        assert line.startswith(message)
+
+
+def test_a_point_is_named_by_texts_too():
+    by_number, by_text = (plot.mechanism(SCENES["engine"], point=at) for at in ((0.1, 15.0), ("10 cm", "15 deg")))
+    np.testing.assert_array_equal(points(by_text, "_point"), points(by_number, "_point"))
 
 
 @pytest.mark.parametrize(("branch", "angle"), [("open", 90.0), ("crossed", 30.0)])

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import xarray as xr
 
+from linksweep.base.checked_number import one_pair
+from linksweep.base.fields import POLAR_POINT
 from linksweep.base.memory import require_memory
 from linksweep.base.validate import count_problems, quote, refuse
 from linksweep.files.netcdf import scene_of
@@ -73,6 +75,7 @@ def animate(
         refuse([f"point = {quote(point)}: must be left out for several cylinders"] if point is not None else [])
         with small_type():
             return film_of_cylinders(scene.in_memory, frames, title or f"Engine of {len(scene.crank_angles)} cylinders")
+    point = None if point is None else one_pair("point", point, POLAR_POINT)
     one = scene if isinstance(scene, Scene) else scene_of(scene, whole=False)
     index = one.mechanism.index
     sound = isinstance(scene, Scene) or index in scene.dims

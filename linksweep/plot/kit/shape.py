@@ -129,7 +129,7 @@ def curve_of(
     if carrier.end and point is None:
         return places[carrier.end]
     cg = scene.mechanism.masses()[carrier.role]
-    at = _polar(*(point or (cg.cg_distance, cg.cg_angle)))
+    at = _polar(*((cg.cg_distance, cg.cg_angle) if point is None else point))
     return point_of(scene, drawing, cycle, places, carrier.number, *at)
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import xarray as xr
 
-from linksweep.base.checked_number import checked_number, checked_pair
+from linksweep.base.checked_number import checked_number, one_pair
 from linksweep.base.fields import POLAR_POINT
 from linksweep.base.validate import Rule, choice_problems, flag_problems, listed, quote, refuse
 from linksweep.files.atomic import ending_of, whole
@@ -110,8 +110,7 @@ def _points(scene: Scene, curves: Any) -> list[Curve]:
         refuse([] if sound else [f"{path} = {quote(item)}: must be (link, distance [m], angle [degree])"])
         link, *at = item
         refuse(choice_problems(f"{path}[1]", link, roles))
-        distance, turned = checked_pair(path, tuple(at), POLAR_POINT)
-        points.append(Curve(link, roles[link], (float(distance), float(turned))))
+        points.append(Curve(link, roles[link], one_pair(path, tuple(at), POLAR_POINT)))
     return points
 
 
