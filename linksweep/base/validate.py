@@ -272,10 +272,9 @@ def one_text_problems(path: str, value: Any, meaning: str) -> list[str]:
 
 
 def count_problems(path: str, value: Any) -> list[str]:
-    """Return a problem unless a value is a whole number, 1 or more; its owner checks None."""
+    """Return a problem unless a value is a whole number, 1 or more."""
     whole = isinstance(value, int | np.integer) and not isinstance(value, bool)
-    sound = value is None or (whole and value >= 1)
-    return [] if sound else [f"{path} = {quote(value)}: must be a whole number, 1 or more"]
+    return [] if whole and value >= 1 else [f"{path} = {quote(value)}: must be a whole number, 1 or more"]
 
 
 def flag_problems(path: str, value: Any) -> list[str]:

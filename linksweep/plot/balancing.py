@@ -52,7 +52,7 @@ def balance(before: Scene, after: Scene, *, theta2: int = 720) -> Figure:
     Raises
     ------
     ValueError
-        For a mechanism without pins, and for more than one design.
+        For a mechanism without pins, a theta2 that is no count, and for more than one design.
 
     Examples
     --------

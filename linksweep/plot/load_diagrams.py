@@ -49,7 +49,7 @@ def bearing(ds: xr.Dataset, of: str = "F32", *, frame: str = "ground", ax: Axes 
     Raises
     ------
     ValueError
-        For a force that is not in the Dataset, for an unknown frame, and for more than one design.
+        For what is no name of a force in the Dataset, for an unknown frame, and for more than one design.
 
     Examples
     --------

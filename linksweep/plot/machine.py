@@ -71,8 +71,8 @@ def mechanism(
     Raises
     ------
     ValueError
-        Where the machine cannot be assembled at that angle, for more than one design, and for `forces` that are no
-        truth value.
+        Where the machine cannot be assembled at that angle, for a point that is none, for more than one design, and for
+        `forces` that are no truth value.
 
     Examples
     --------

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import xarray as xr
 
-from linksweep.base.validate import name_problems, refuse
+from linksweep.base.validate import count_problems, name_problems, refuse
 from linksweep.plot.kit.colors import BLACK, BLUE, GREY, ORANGE
 from linksweep.plot.kit.style import axes_or_new, grid
 from linksweep.results.compute import require_dataset
@@ -40,8 +40,8 @@ def tornado(ds: xr.Dataset, of: str | None = None, *, most: int = 12, ax: Axes |
     Raises
     ------
     ValueError
-        For a Dataset without tolerances, for an unknown name, for more than one design, and for a result that is
-        infinite or has no derivative.
+        For a Dataset without tolerances, for an unknown name, for more than one design, for a count below 1, and for a
+        result that is infinite or has no derivative.
 
     Examples
     --------
@@ -54,7 +54,7 @@ def tornado(ds: xr.Dataset, of: str | None = None, *, most: int = 12, ax: Axes |
     known = [str(key).removesuffix("_share") for key in ds.data_vars if str(key).endswith("_share")]
     refuse([] if known else ["ds has no tolerances: take what ls.tolerance returns"])
     name = known[0] if of is None else name_in_results(ds, of)
-    refuse(name_problems("of", name, known))
+    refuse(name_problems("of", name, known) + count_problems("most", most))
     several = [str(dim) for dim in ds[f"{name}_share"].dims if dim != "parameter"]
     one = f"take one, as ds.isel({dict.fromkeys(several, 0)})"
     refuse([f"ds has several designs, over {', '.join(several)}: {one}"] if several else [])

@@ -161,7 +161,7 @@ def quantities(scene: Scene, search: str | None = None) -> QuantityTable:
     Raises
     ------
     ValueError
-        For anything but a Scene.
+        For anything but a Scene, and for words that are no text.
 
     Notes
     -----

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from linksweep.base.validate import refuse
+from linksweep.base.validate import count_problems, refuse
 from linksweep.engine.threads import limits_threads, threads_of_a_task
 from linksweep.files.atomic import ending_of, target_of
 from linksweep.files.netcdf import loaded, save_dataset
@@ -28,7 +28,7 @@ from linksweep.results.compute import requested
 from linksweep.results.front import objective_attributes
 from linksweep.studies.cluster import AHEAD, client_of
 from linksweep.studies.screen_progress import Progress, other_screening
-from linksweep.studies.screen_request import counts_problems, ready, screening_of
+from linksweep.studies.screen_request import ready, screening_of
 from linksweep.studies.screening import DIM, Screening, tally_there
 from linksweep.studies.study import usual_chunk
 from linksweep.studies.tally import Tally
@@ -134,7 +134,7 @@ def screen(
     """
     further = requested("of", of, scene)
     task = screening_of(scene, parameters, minimize, maximize, subject_to, keep, bins, seed, options)
-    refuse(counts_problems(n=n, chunk=chunk))
+    refuse(count_problems("n", n) + ([] if chunk is None else count_problems("chunk", chunk)))
     client = client_of(client)
     task, manifest = ready(task, int(n), further)
     target, progress = None, None

@@ -38,7 +38,7 @@ def screening_of(
 ) -> Screening:
     """Return the screening that is requested; edges are NaN until `ready` draws them. ValueError where it cannot be."""
     problems = parameter_problems(scene, parameters) + dim_problems(scene, DIM)
-    refuse([*problems, *seed_range_problems(seed), *counts_problems(keep=keep)])
+    refuse([*problems, *seed_range_problems(seed), *count_problems("keep", keep)])
     dims = [*design_sizes(scene), *scene.mechanism.both_branches]
     advice = "give one design, as of ls.scene_at, and let its numbers vary by `parameters`"
     refuse([f"scene: has designs along {', '.join(dims)}; {advice}"] if dims else [])
@@ -51,18 +51,12 @@ def screening_of(
     edges = {}
     if isinstance(bins, Mapping):
         edges = {name: _edges(name, own) for name, own in by_name("bins", bins, scene).items()}
-    refuse([] if isinstance(bins, Mapping) else counts_problems(bins=bins))
+    refuse([] if isinstance(bins, Mapping) else count_problems("bins", bins))
     nothing = 'minimize: give what is asked for: minimize="F32_peak", maximize, subject_to or bins'
     refuse([] if objectives or limits or edges else [nothing])
     if not isinstance(bins, Mapping):
         edges = {name: np.full(int(bins) + 1, np.nan) for name in (*objectives, *limits) if name != "status"}
     return Screening(in_memory(scene), parameters, int(seed), objectives, limits, edges, int(keep), options)
-
-
-def counts_problems(**counts: Any) -> list[str]:
-    problems = [problem for name, count in counts.items() for problem in count_problems(name, count)]
-    missing = [name for name in ("n", "keep", "bins") if name in counts and counts[name] is None]
-    return problems + [f"{name} = None: must be a whole number, 1 or more" for name in missing]
 
 
 def _limits(subject_to: Any) -> dict[str, tuple[float, float]]:

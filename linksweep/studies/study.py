@@ -119,7 +119,7 @@ def study(
     True
     """
     require_scene(scene)
-    refuse(count_problems("chunk", chunk))
+    refuse([] if chunk is None else count_problems("chunk", chunk))
     ending_of(path, (".nc",), ADVICE)
     client = client_of(client)
     scene = in_memory(scene)

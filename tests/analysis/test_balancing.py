@@ -352,7 +352,7 @@ def test_refusals_of_objectives(call, message):
 )
 def test_a_count_of_angles_is_no_list_of_angles(call):
     """Peaks and means of two angles are none of the cycle."""
-    for angles in ([0, 90], (0, 90), np.array([0.0, 90.0])):
+    for angles in ([0, 90], (0, 90), np.array([0.0, 90.0]), None):
         (line,) = refusal(call, angles)
         assert line == f"theta2 = {angles!r}: must be a whole number, 1 or more"
 

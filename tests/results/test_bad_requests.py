@@ -355,6 +355,27 @@ def test_lists_of_names_that_are_none(request_, message):
     assert text.startswith(message)
 
 
+MOTOR = ls.InductionMotor("1500 rpm", "15 N m", rated_torque="6 N m", rated_speed="1425 rpm", inertia=0.004)
+RUBBING = {"B": ls.Bearing(diameter=0.02, friction=0.1)}
+
+
+@pytest.mark.parametrize(
+    ("call", "path"),
+    [
+        (lambda count: ls.orders(ls.sweep(PRESS, 24, of="Fsx"), "Fsx", n=count), "n"),
+        (lambda count: ls.load_spectrum(ls.bearings(PRESS, theta2=24), classes=count), "classes"),
+        (lambda count: ls.pin_friction(PRESS, RUBBING, theta2=count), "theta2"),
+        (lambda count: ls.pin_friction(PRESS, RUBBING, iterations=count), "iterations"),
+        (lambda count: ls.steady_cycle(PRESS, MOTOR, ratio=5.0, theta2=count), "theta2"),
+        (lambda count: ls.plot.animate(PRESS, frames=count), "frames"),
+        (lambda count: ls.plot.tornado(ls.tolerance(PRESS, {"ground": "js9"}, of="F32", n=0), most=count), "most"),
+    ],
+)
+def test_counts_that_are_none(call, path):
+    for count in (None, "5", 2.5, -1):
+        assert refusal(call, count) == [f"{path} = {count!r}: must be a whole number, 1 or more"]
+
+
 def test_names_are_taken_from_an_iterator():
     names, made = ["F32_peak", "F43_peak"], {"ground": ls.Tolerance(-1e-4, 1e-4)}
     assert ls.tolerance(PRESS, made, of=iter(names), n=4).identical(ls.tolerance(PRESS, made, of=names, n=4))

@@ -105,7 +105,8 @@ def best_counterweights(
     Raises
     ------
     ValueError
-        If the scene has several designs or friction, a name is unknown, or a weight, radius or mass is out of bounds.
+        If the scene has several designs or friction, a name is unknown, theta2 is no count, or a weight, radius or
+        mass is out of bounds.
 
     Notes
     -----

@@ -50,7 +50,7 @@ def compare(before: Scene, after: Scene, *, of: Any, theta2: int = 720, threads:
     Raises
     ------
     ValueError
-        If a name is unknown.
+        If a name is unknown, there is none, or theta2 is no count.
 
     Examples
     --------

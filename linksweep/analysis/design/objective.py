@@ -310,8 +310,8 @@ def objective(
     Raises
     ------
     ValueError
-        If a parameter or name is unknown, a range is no pair (low, high), the constraint is no function, bearings do
-        not fit the scene, or the scene refuses its values.
+        If a parameter or name is unknown, a range or bound is no pair (low, high), the constraint is no function, the
+        fluctuation is none, bearings do not fit the scene, or the scene refuses its values.
 
     Examples
     --------

@@ -81,8 +81,8 @@ def sensitivities(
     Raises
     ------
     ValueError
-        If a name is unknown, a parameter is no number, changes with the angle, or is a coefficient of friction of 0, or
-        bearings do not fit the scene.
+        If a name is unknown, a list of names is empty, the fluctuation is none, a parameter is no number, changes with
+        the angle, or is a coefficient of friction of 0, or bearings do not fit the scene.
 
     Notes
     -----

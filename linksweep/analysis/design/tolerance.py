@@ -105,8 +105,8 @@ def tolerance(
     Raises
     ------
     ValueError
-        If a path or name is unknown, a parameter has no derivative, a tolerance is none, or bearings do not fit the
-        scene.
+        If a path or name is unknown, there is no name, a parameter has no derivative, a tolerance or the fluctuation is
+        none, or bearings do not fit the scene.
 
     Notes
     -----

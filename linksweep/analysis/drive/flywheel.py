@@ -104,8 +104,8 @@ def flywheel(
     Raises
     ------
     ValueError
-        If fluctuation and inertia are both given or both left out, a number is out of bounds, the crank stands still,
-        changes its speed or has an alpha2, or arrays over one dim differ in length or labels.
+        If fluctuation and inertia are both given or both left out, a number is out of bounds, theta2 is no count, the
+        crank stands still, changes its speed or has an alpha2, or arrays over one dim differ in length or labels.
 
     Notes
     -----

@@ -53,7 +53,7 @@ def breakdown(
     Raises
     ------
     ValueError
-        If a name is no force of the scene, or the machine has no pins.
+        If a name is no force of the scene, there is none, or the machine has no pins.
 
     Notes
     -----

@@ -125,8 +125,8 @@ def speed_limit(scene: Scene, of: str, *, below: float, threads: int | None = No
     Raises
     ------
     ValueError
-        If the name is no force, the limit is not one positive number, the scene has friction or dampers (compute the
-        peaks over an array of speeds instead), branch="both", or no crank.
+        If `of` is no name of one force, the limit is not one positive number, the scene has friction or dampers
+        (compute the peaks over an array of speeds instead), branch="both", or no crank.
 
     Examples
     --------

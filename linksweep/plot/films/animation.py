@@ -58,7 +58,7 @@ def animate(
     Raises
     ------
     ValueError
-        For more than one design, and where there is no result at two angles or more.
+        For more than one design, for a point that is none, and where there is no result at two angles or more.
 
     Examples
     --------

@@ -72,9 +72,8 @@ def sample(
     {'design': 1024}
     """
     problems = parameter_problems(scene, parameters)
-    problems += [f"n = {n}: must be a whole number, 1 or more"] if n is None else count_problems("n", n)
-    problems += choice_problems("method", method, METHODS) + ([] if seed is None else seed_problems(seed))
-    refuse([*problems, *dim_problems(scene, dim)])
+    problems += count_problems("n", n) + choice_problems("method", method, METHODS)
+    refuse([*problems, *([] if seed is None else seed_problems(seed)), *dim_problems(scene, dim)])
     require_memory(f"n = {quote(n)}", 2.0 * 8.0 * n * len(parameters))
     return with_designs(scene, parameters, _points(method, len(parameters), int(n), seed), np.arange(int(n)), dim)
 
