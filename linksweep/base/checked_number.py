@@ -47,8 +47,13 @@ def one_pair(path: str, value: Any, kind: PairField) -> tuple[float, float]:
 
 
 def _alone(path: str, number: Number) -> float:
-    refuse([f"{path}: has {np.ndim(number)} dims: give one number for all designs"] if np.ndim(number) else [])
+    refuse(dims_problems(path, number))
     return float(number)
+
+
+def dims_problems(path: str, number: Number) -> list[str]:
+    """Return a problem of an array with dims, where one number is to stand."""
+    return [f"{path}: has {np.ndim(number)} dims: give one number for all designs"] if np.ndim(number) else []
 
 
 def unit_attribute_problems(parameters: Iterable[tuple[str, Number, str]]) -> list[str]:

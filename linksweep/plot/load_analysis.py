@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.analysis.pins.speed_limit import LIMITS, speed_limit
-from linksweep.base.checked_number import checked_number
+from linksweep.base.checked_number import one_number
 from linksweep.base.conversion import all_to_float64
 from linksweep.base.validate import name_problems, refuse
 from linksweep.plot.curves import shade_gaps
@@ -146,7 +146,7 @@ def over_speed(scene: Scene, of: str, *, speeds: Any, below: float | None = None
     ax = grid(axes_or_new(ax))
     symbol, units = signals.symbol(of) or of, system.unit(force)
     speeds, sizes = system.value(values, "rad/s"), system.value(worst.values, force)
-    most = None if below is None else system.value(float(checked_number("below", below, LIMITS[force])), force)
+    most = None if below is None else system.value(one_number("below", below, LIMITS[force]), force)
     ax.plot(speeds, sizes, "-" if len(speeds) > 1 else "o", color=BLUE, label=f"peak of {symbol}")
     ax.axhline(rest, color=GREY, linestyle="--", linewidth=1.0, label="at rest: weight and loads")
     if len(speeds) > 1:

@@ -1,4 +1,4 @@
-"""Numbers that a constructor refuses: each message states path, value, what is allowed and what to do."""
+"""Numbers that a constructor or a function refuses: each message states path, value, what is allowed and what to do."""
 
 import warnings
 from dataclasses import dataclass
@@ -250,3 +250,33 @@ def test_a_number_without_unit():
     assert number_problems("friction", -0.1, rule) == ["friction = -0.1: must be at least 0"]
     assert number_problems("friction", np.nan, rule) == ["friction = nan: must be finite and at least 0"]
     assert number_problems("friction", True, rule) == ["friction = True: must be a number, not a truth value"]
+
+
+# ------------------------------------------------------------------------------ numbers of functions
+
+PRESS = ls.example("press")
+
+
+@pytest.mark.parametrize(
+    ("call", "path"),
+    [
+        (lambda two: ls.geometry(PRESS, dwell=two), "dwell"),
+        (lambda two: ls.best_counterweights(PRESS, {"Fs_rms": 1}, radius=two), "radius"),
+        (lambda two: ls.best_counterweights(PRESS, {"Fs_rms": 1}, radius={"crank": two}), "radius.crank"),
+        (lambda two: ls.best_counterweights(PRESS, {"Fs_rms": 1}, radius=0.06, most=two), "most"),
+        (lambda two: ls.best_counterweights(PRESS, {"Fs_rms": two}, radius=0.06), "minimize.Fs_rms"),
+        (lambda two: ls.save_drawing(PRESS, "a.svg", scale=two), "scale"),
+        (lambda two: ls.speed_limit(PRESS, "F32", below=two), "below"),
+        (lambda two: ls.plot.over_speed(PRESS, "F32", speeds=[10, 20], below=two), "below"),
+        (lambda two: ls.Motor([0.0, two], [3.0, 0.0]), "speeds[2]"),
+        (lambda two: ls.run_down(PRESS, turns=two), "turns"),
+    ],
+)
+def test_one_number_is_no_array_of_several(call, path):
+    two = array(0.1, 0.2, dims="k")
+    assert refusal(call, two) == [f"{path}: has 1 dims: give one number for all designs"]
+
+
+def test_no_radius_at_all_is_refused():
+    (line,) = refusal(ls.best_counterweights, PRESS, {"Fs_rms": 1}, radius={})
+    assert line == "radius: is empty; name one or more of crank, coupler, rocker"

@@ -22,9 +22,9 @@ import numpy as np
 import xarray as xr
 
 from linksweep.analysis.balance.compare import sizes_named
-from linksweep.analysis.balance.counterweights import Counterweight, by_link
+from linksweep.analysis.balance.counterweights import RADIUS, Counterweight, by_link
 from linksweep.analysis.balance.regressor import OF_LINK, regressor
-from linksweep.base.checked_number import checked_number
+from linksweep.base.checked_number import one_number
 from linksweep.base.validate import Rule, count_problems, name_problems, quote, refuse
 from linksweep.engine.threads import limits_threads
 from linksweep.results.compute import by_name, require
@@ -129,12 +129,14 @@ def best_counterweights(
     sizes = _weights(scene, minimize)
     carriers = scene.mechanism.parts
     grounded = [body.role for body in scene.mechanism.bodies if body.on_ground and body.role in carriers]
-    radii = by_link("radius", radius, list(radius) if isinstance(radius, Mapping) else grounded)
+    links = list(radius) if isinstance(radius, Mapping) else grounded
+    refuse([] if links else [f"radius: is empty; name one or more of {', '.join(carriers)}"])
+    radii = by_link("radius", radius, links, RADIUS, one_number)
     refuse([p for link in radii for p in name_problems("radius", link, carriers)])
-    bounds = dict.fromkeys(radii, np.inf) if most is None else by_link("most", most, list(radii), MOST)
-    spokes = {link: _spokes(float(r)) for link, r in radii.items()}
+    bounds = dict.fromkeys(radii, np.inf) if most is None else by_link("most", most, list(radii), MOST, one_number)
+    spokes = {link: _spokes(r) for link, r in radii.items()}
     aims = _aims(scene, sizes, list(spokes), theta2)
-    masses = _best(aims, list(spokes.values()), np.array([float(bounds[link]) for link in spokes]))
+    masses = _best(aims, list(spokes.values()), np.array([bounds[link] for link in spokes]))
     parts = masses.reshape(len(spokes), DIRECTIONS)
     return [_as_one(link, part, spokes[link]) for link, part in zip(spokes, parts, strict=True)]
 
@@ -145,8 +147,8 @@ def _weights(scene: Scene, minimize: Any) -> dict[tuple[str, str], float]:
     refuse([f"minimize = {quote(minimize)}: {form}"] if not isinstance(minimize, Mapping) or not minimize else [])
     minimize = by_name("minimize", minimize, scene)
     sizes = sizes_named("minimize", scene, minimize)
-    weights = [checked_number(f"minimize.{name}", weight, WEIGHT) for name, weight in minimize.items()]
-    return dict(zip(sizes, map(float, weights), strict=True))
+    weights = [one_number(f"minimize.{name}", weight, WEIGHT) for name, weight in minimize.items()]
+    return dict(zip(sizes, weights, strict=True))
 
 
 def _spokes(radius: float) -> Array:

@@ -5,7 +5,7 @@ Equations and sources: `linksweep.mechanisms.balance`.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -186,14 +186,20 @@ def counterweights(scene: Scene, *, radius: Any, fraction: Number | None = None)
     return [_weight(link, moment, radii[link]) for link, moment in lacking.items()]
 
 
-def by_link(word: str, values: Any, links: list[str], rule: Rule = RADIUS) -> dict[str, Number]:
+def by_link(
+    word: str,
+    values: Any,
+    links: list[str],
+    rule: Rule = RADIUS,
+    checked: Callable[[str, Any, Rule], Number] = checked_number,
+) -> dict[str, Number]:
     """Return a number for each link: one for all, or by name."""
     if not isinstance(values, Mapping):
-        return dict.fromkeys(links, checked_number(word, values, rule))
+        return dict.fromkeys(links, checked(word, values, rule))
     by_link = dict(values)
     refuse([p for link in by_link for p in choice_problems(word, link, links)])
     refuse([f"{word}.{link}: missing; give it {rule.number}" for link in links if link not in by_link])
-    return {link: checked_number(f"{word}.{link}", number, rule) for link, number in by_link.items()}
+    return {link: checked(f"{word}.{link}", number, rule) for link, number in by_link.items()}
 
 
 def _weight(link: str, moment: Any, radius: Number) -> Counterweight:

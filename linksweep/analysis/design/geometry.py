@@ -24,7 +24,7 @@ from typing import Any
 import xarray as xr
 
 from linksweep.analysis.design.travel import rate_of, travel
-from linksweep.base.checked_number import checked_number, checked_pair
+from linksweep.base.checked_number import checked_pair, one_number
 from linksweep.base.degrees import cos_sin
 from linksweep.base.fields import POLAR_POINT
 from linksweep.base.validate import Rule, choice_problems, refuse
@@ -113,7 +113,7 @@ def geometry(
     """
     require(scene, "bodies")
     bare = in_memory(replace(scene, omega2=1.0, alpha2=0.0, loads=()))
-    dwell = float(checked_number("dwell", dwell, DWELL))
+    dwell = one_number("dwell", dwell, DWELL)
     in_closed_form = of is None and offers(bare.mechanism, "stroke_findings")
     variables, labels = evaluated(bare.mechanism.stroke_findings() if in_closed_form else ())
     for name in [] if in_closed_form else _positions(bare, of):

@@ -17,7 +17,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.analysis.pins.breakdown import forces_of
-from linksweep.base.checked_number import checked_number
+from linksweep.base.checked_number import one_number
 from linksweep.base.validate import Rule, refuse
 from linksweep.engine.threads import limits_threads
 from linksweep.results.changed import quantities_with
@@ -144,8 +144,7 @@ def speed_limit(scene: Scene, of: str, *, below: float, threads: int | None = No
     refuse(_problems(scene))
     require_one_branch(scene)
     refuse(quantity_problems("of", name, forces_of(scene), scene))
-    below = checked_number("below", below, LIMITS[scene.table.quantity[name].units])
-    refuse(["below has dims: must be one number; give each limit by itself"] if np.ndim(below) else [])
+    below = one_number("below", below, LIMITS[scene.table.quantity[name].units])
     parts = scene.table.quantity[name].components
     unit_speed = replace(scene, omega2=_one_each(scene))
     squared, angle = _of_samples(unit_speed, parts, below), xr.DataArray(math.nan)

@@ -8,7 +8,7 @@ from typing import Any
 
 import xarray as xr
 
-from linksweep.base.checked_number import checked_number, one_pair
+from linksweep.base.checked_number import one_number, one_pair
 from linksweep.base.fields import POLAR_POINT
 from linksweep.base.validate import Rule, choice_problems, flag_problems, listed, quote, refuse
 from linksweep.files.atomic import ending_of, whole
@@ -121,4 +121,4 @@ def scale_of(scale: Any) -> float:
         size = float(paper) / float(of_machine) if colon else scale
     except (ValueError, ZeroDivisionError):
         size = scale
-    return float(checked_number("scale", size, Rule("dimensionless", above=0.0)))
+    return one_number("scale", size, Rule("dimensionless", above=0.0))

@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 
 from linksweep.analysis.drive.motors.motor import AnyMotor
-from linksweep.base.checked_number import array_unit_problems, unit_attribute_problems
+from linksweep.base.checked_number import array_unit_problems, dims_problems, unit_attribute_problems
 from linksweep.base.conversion import all_to_float64
 from linksweep.base.equality import ByContent
 from linksweep.base.fields import field_problems, numbers, parameter
 from linksweep.base.frozen import normalise
-from linksweep.base.validate import Number, Rule, number_problems, quote, refuse
+from linksweep.base.validate import Number, Rule, is_array, number_problems, quote, refuse
 
 POINTS = {"speeds": Rule("angular_velocity", at_least=0.0), "torques": Rule("torque", at_least=0.0)}
 
@@ -54,11 +54,10 @@ class Motor(AnyMotor):
         ByContent.__post_init__(self)
         problems = field_problems(self) + unit_attribute_problems(numbers(self))
         for name, rule in POINTS.items():
-            values = all_to_float64(name, getattr(self, name), rule.kind)
-            points = np.ravel(np.asarray(values, dtype=object)).tolist()
+            points = _points(name, getattr(self, name), rule.kind)
             problems += array_unit_problems(name, getattr(self, name), rule.kind)
             problems += [p for k, point in enumerate(points, 1) for p in number_problems(f"{name}[{k}]", point, rule)]
-            normalise(self, **{name: tuple(points)})
+            normalise(self, **{name: points})
         count = len(self.speeds)
         if len(self.torques) != count or count < 2:
             problems.append(f"torques has {len(self.torques)} values for {count} speeds: give as many, two at least")
@@ -83,6 +82,14 @@ class Motor(AnyMotor):
             return np.sign(at) * slopes[np.searchsorted(self.speeds, np.abs(at), side="right") - 1]
 
         return _over(speed, slope)
+
+
+def _points(path: str, values: Any, kind: str) -> tuple[Any, ...]:
+    """Return the numbers of a curve's points, converted; ValueError for an array among them."""
+    converted = all_to_float64(path, values, kind)
+    each = enumerate(converted, 1) if isinstance(converted, list) else ()
+    refuse([p for k, point in each if is_array(point) for p in dims_problems(f"{path}[{k}]", point)])
+    return tuple(np.ravel(np.asarray(converted, dtype=object)).tolist())
 
 
 def _over(speed: Any, function: Any) -> Any:
