@@ -34,7 +34,7 @@ def attack(random: np.random.Generator, rounds: int) -> Outcome:
     from distributed import Client, LocalCluster
 
     failures, kills, workers = [], 0, min(2, rounds)
-    quiet = {"dashboard_address": None, "silence_logs": logging.CRITICAL}
+    quiet = {"dashboard_address": ":0", "silence_logs": logging.CRITICAL}
     with (
         tempfile.TemporaryDirectory() as folder,
         dask.config.set({"distributed.comm.timeouts.connect": "60s"}),
@@ -58,12 +58,13 @@ def attack(random: np.random.Generator, rounds: int) -> Outcome:
 
 
 def _kill(cluster: Any, pauses: np.ndarray, places: np.ndarray) -> None:
-    """Kill a worker after each pause, if it runs; its nanny starts another."""
+    """Kill a worker after each pause, of those that the scheduler knows; its nanny starts another."""
     for pause, place in zip(pauses, places, strict=True):
         time.sleep(float(pause))
-        with contextlib.suppress(ProcessLookupError):
-            if pid := [*cluster.workers.values()][place].pid:
-                os.kill(pid, signal.SIGKILL)
+        running = [worker.pid for worker in [*cluster.scheduler.workers.values()] if worker.pid]
+        if running:
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(running[place % len(running)], signal.SIGKILL)
 
 
 def _study(path: Path, client: Any) -> None:
