@@ -1,5 +1,3 @@
-"""Evaluate a table of rows: trace/ (table → plan), kernel/ (plan → one fused kernel), peaks/ (search); no mechanism.
-
-linear/ solves square systems. Mechanisms import `quantity`; scenes and results import `run` and `trace.plan`, and
-results `peaks.find_peaks` and `linear.solve`.
+"""Evaluate a table of rows, of any machine: trace/ makes a plan of it, kernel/ one compiled function of the plan, which
+interpreter/ does without; peaks/ searches for peaks, near_zero/ for dips and zeros; linear/ solves square systems.
 """

@@ -22,7 +22,7 @@ from linksweep.engine.kernel import reduce
 from linksweep.engine.kernel.compile import compiled
 from linksweep.engine.kernel.instructions import REGISTER
 from linksweep.engine.kernel.side_by_side import SideBySideWriter, fits_side_by_side, parity
-from linksweep.engine.kernel.vectors import LANES, width_in_stages
+from linksweep.engine.kernel.vectors import WIDEST, width_in_stages
 from linksweep.engine.kernel.writer import Reduction, Writer
 from linksweep.engine.patience import Patience
 from linksweep.engine.threads import over_threads
@@ -125,8 +125,8 @@ class Runner(Patience):
 
     def fused_for(self, designs: int, profiles: np.ndarray, at: np.ndarray) -> Writer:
         """Return the kernel for this many designs in the innermost loop, and the samples of its profiles."""
-        pays = -(-designs // LANES) * LANES <= MOST_REPEATED * designs
-        if designs < LANES or not pays or not fits_side_by_side(self.fused):  # else lanes would write behind results
+        pays = -(-designs // WIDEST) * WIDEST <= MOST_REPEATED * designs
+        if designs < WIDEST or not pays or not fits_side_by_side(self.fused):  # else lanes would write behind results
             return self.fused
         known, key = self.latest
         if known is not profiles:
@@ -236,10 +236,10 @@ def _execute(ready: Runner, inputs: Fields, grid: Grid, sizes: Sizes) -> tuple[n
     profiles, profile_at = _profiles(plan, ready.fused.profiles, inputs, grid)
     (block_at, block_rows), (single_at, single_size) = layout.places(layout.rows), layout.places(layout.singles)
     samples = len(grid.angles)
-    room = max(samples, LANES)
+    room = max(samples, WIDEST)
     streamed = 8 * block_rows * room >= STREAMED_FROM
     if streamed:  # whole vectors, each of whole lines of the caches
-        samples = room = -(-room // LANES) * LANES
+        samples = room = -(-room // WIDEST) * WIDEST
         fused, kernel = ready.streamed, compiled(ready.streamed.source, "block")
     else:
         fused = ready.fused_for(int(layout.sizes[-1]), profiles, profile_at)
@@ -250,10 +250,10 @@ def _execute(ready: Runner, inputs: Fields, grid: Grid, sizes: Sizes) -> tuple[n
     numbers = block_rows * room + single_size
     require_memory(f"{numbers} numbers (results × designs × angles): ask for fewer", 8.0 * numbers)
     block, single = new_block(block_rows, room), np.empty(single_size)
-    unit, length = (fused.unit, int(layout.sizes[0])) if plan.loops else (LANES, samples)
+    unit, length = (fused.unit, int(layout.sizes[0])) if plan.loops else (WIDEST, samples)
 
     def work(first: int, last: int) -> None:
-        apart = room + LANES if room % 512 == 0 else room  # else all rows would compete for the same cache sets
+        apart = room + WIDEST if room % 512 == 0 else room  # else all rows would compete for the same cache sets
         scratch, values = np.empty((len(fused.scratch), apart)), new_block(1, fused.value_count)[0]
         kernel(
             first * unit, min(last * unit, length), samples, room, apart, layout.sizes, parameters, parameter_at,

@@ -20,6 +20,7 @@ Steps = tuple[Array, Array, Array, Array]
 """Sizes of steps of some systems; states and derivatives at their ends; errors as multiples of what is allowed."""
 
 STAGES, EXPONENT = 12, -1.0 / 8.0
+"""Evaluations of a step, and the power of its error with which the next step changes."""
 SAFETY, LEAST, MOST = 0.9, 0.2, 5.0
 """Share of the step that would just be allowed, and the least and the largest ratio of a step to the one before."""
 FIRST = 0.02
@@ -27,7 +28,8 @@ FIRST = 0.02
 SHORTEST = 1e-14
 """Step, as a share of the longest one, at which a system is given up."""
 LANDING, ROUNDING, LANDING_STEPS = 1e-13, 1e-15, 60
-"""Distance from a level, relative to the scale of its component, or to the level itself, at which a step ends on it."""
+"""Distance from a level at which a step ends on it, relative to the scale of its component, or to the level itself; and
+the most steps that are tried to end there."""
 GOES_ON, GIVEN_UP = 0, -1
 """Outcomes: a system goes on; it was given up, for its derivatives are no numbers, or jump without end."""
 

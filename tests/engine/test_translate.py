@@ -165,5 +165,5 @@ def test_a_constant_that_changes_makes_other_machine_code(monkeypatch):
     row = np.zeros(1)
     for number in PAIR:
         monkeypatch.setitem(first_of_pair.__globals__, "PAIR", (number, 7.0))
-        translated(first_of_pair, ("f8[:]",))(row)
+        translated.__wrapped__(first_of_pair, ("f8[:]",))(row)
         assert row[0] == number

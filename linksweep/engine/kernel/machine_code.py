@@ -29,9 +29,8 @@ from linksweep.engine.kernel import instructions
 INTEGER, INTEGERS, ROW, TABLE = "i8", "i8[:]", "f8[:]", "f8[:, :]"
 SOURCE = inspect.getsource(sys.modules[__name__]) + instructions.SOURCE
 """All that enters the machine code besides what is asked for."""
-
-
 NUMBERS = {"f8": np.dtype(np.float64), "i8": np.dtype(np.int64)}
+"""Kinds of numbers in arrays."""
 HEADER, _integer_at = object.__basicsize__, ctypes.c_int64.from_address
 """The address of an array's memory follows the header that all objects have: numpy's C interface promises so, and
 `array.ctypes` takes ten times as long."""

@@ -14,7 +14,7 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 
 from linksweep.engine.kernel.running import EXTREMES
-from linksweep.engine.kernel.vectors import LANES
+from linksweep.engine.kernel.vectors import WIDEST
 from linksweep.engine.kernel.writer import DEEPEST, Reduction, Writer
 from linksweep.engine.trace.graph import Node, depth_first, operands
 from linksweep.engine.trace.parity import parities
@@ -45,13 +45,13 @@ class SideBySideWriter(Writer):
 
     def __init__(self, plan: Plan, reductions: tuple[Reduction, ...], of_profiles: tuple[int, ...]) -> None:
         super().__init__(plan, reductions)
-        self.parity: Mapping[Node, int] = parities(self.nodes, dict(zip(self.profiles, of_profiles, strict=True)))
+        self.parity: Mapping[Node, int] = parities(plan.nodes, dict(zip(self.profiles, of_profiles, strict=True)))
         self.mirrored = False
         """True while names, and what is read, belong to the sample at −θ."""
 
     @property
     def unit(self) -> int:
-        return LANES if self.innermost == 1 else 1
+        return WIDEST if self.innermost == 1 else 1
 
     @property
     def value_count(self) -> int:
@@ -59,7 +59,7 @@ class SideBySideWriter(Writer):
 
     def _summary(self, k: int) -> int:
         """Return the place in `values` of a running summary: behind all values, at the start of a line of the cache."""
-        return -(-len(self.values) // LANES) * LANES + 2 * LANES * k
+        return -(-len(self.values) // WIDEST) * WIDEST + 2 * WIDEST * k
 
     def _kept_in_scratch(self) -> list[Node]:
         return [node for node in super()._kept_in_scratch() if self.level(node) < self.innermost]
@@ -77,8 +77,7 @@ class SideBySideWriter(Writer):
 
     def _designs(self, level: int) -> None:
         """Write the function of the innermost loop."""
-        own = {k: self.plan.outputs[r.name] for k, r in enumerate(self.reductions)}
-        own = {k: node for k, node in own.items() if self.level(node) == level}
+        own = self._reduced(level)
         work = self._work(own.values())
         values = [node for node in self.values if self.level(node) == level]
         read = {*own.values(), *operands([*work, *values])} - {*work, *values}

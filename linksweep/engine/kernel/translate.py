@@ -22,7 +22,7 @@ import builtins
 import inspect
 import sys
 from collections.abc import Callable
-from functools import partial, reduce
+from functools import cache, partial, reduce
 from types import FunctionType, ModuleType
 from typing import Any, NamedTuple, NoReturn
 
@@ -48,6 +48,7 @@ def written_by(write: Callable[..., Any]) -> Callable[[Callable], Any]:
     return mark
 
 
+@cache
 def translated(function: Callable, kinds: tuple[str, ...]) -> MachineCode:
     """Return a function as machine code, for these kinds of arguments; it returns an integer or nothing."""
 

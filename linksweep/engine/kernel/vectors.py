@@ -12,7 +12,7 @@ Such a function is straight-line arithmetic on numbers, elements and rows of arr
 
 Run on the values of this module, each operation writes one instruction (`engine.kernel.instructions`), on as many
 samples side by side as the processor takes: nothing is left to a compiler that may or may not vectorise a loop. The
-last vector of a row ends with the row, and so repeats samples of the vector before it: rows have at least `LANES`
+last vector of a row ends with the row, and so repeats samples of the vector before it: rows have at least `WIDEST`
 samples, and no function changes a row that it reads.
 
 Of a longer loop, a pass does the last operations of one vector between earlier ones of others. What is read later is
@@ -54,8 +54,8 @@ from linksweep.engine.kernel import instructions, reduce, running, translate
 from linksweep.engine.kernel.instructions import REGISTER, Instructions, longest_chains_first
 from linksweep.engine.kernel.machine_code import ROW, Array, new_function, processor, write_call
 
-LANES = 2 * REGISTER
-"""Samples side by side on processors with the widest registers; the least length of a row."""
+WIDEST = 2 * REGISTER
+"""Samples side by side on processors with the widest registers, two of these; the least length of a row."""
 VECTORS, ONE_BY_ONE = "by vectors", "one by one"
 """How loops count."""
 ROW_LENGTHS = {"profiles": "room", "block": "room", "scratch": "apart"}
@@ -72,7 +72,7 @@ def width() -> int:
     """Return how many samples the processor takes side by side: two registers of them, as one alone would wait for the
     results of its own operations."""
     features = processor()[1].split(",")
-    return 16 if "+avx512f" in features else 8 if "+avx" in features else 4
+    return WIDEST if "+avx512f" in features else 8 if "+avx" in features else 4
 
 
 def width_in_stages() -> int:
@@ -262,7 +262,7 @@ class _Writer:
     def _place_of_vector(self, samples: _Value | int) -> Callable[[Any], _Value]:
         """Return a function of a loop's counter: where its vector begins, which must end with the row."""
         write, step = self.instructions, self.integer(self.instructions.width)
-        latest = self.builder.sub(write.larger(self.integer(samples), self.integer(LANES)), step)
+        latest = self.builder.sub(write.larger(self.integer(samples), self.integer(WIDEST)), step)
         return lambda j: _Value(self, write.smaller(j, latest), VECTORS)
 
     def each(self, first: _Value | int, last: _Value | int) -> Iterator[_Value]:

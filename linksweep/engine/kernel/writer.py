@@ -52,15 +52,13 @@ class Writer:
     def __init__(self, plan: Plan, reductions: tuple[Reduction, ...], staged: bool = True) -> None:
         self.plan, self.reductions, self.staged = plan, reductions, staged
         self.innermost = min(len(plan.loops), DEEPEST)
-        self.nodes = list(plan.nodes)
         stored = () if reductions else plan.stored
         self.rows = tuple(node for node in stored if self.per_sample(node))
         self.singles = tuple(node for node in stored if not self.per_sample(node))
-        inputs = [node for node in self.nodes if node.operator == "input"]
-        self.parameters = tuple(node for node in inputs if not self.per_sample(node))
-        self.profiles = tuple(node for node in inputs if self.per_sample(node))
+        self.parameters = tuple(node for node in plan.input_nodes if not self.per_sample(node))
+        self.profiles = tuple(node for node in plan.input_nodes if self.per_sample(node))
         self.scratch = {node: k for k, node in enumerate(self._kept_in_scratch())}
-        values = (node for node in self.nodes if node.operands and not self.per_sample(node))
+        values = (node for node in plan.nodes if node.operands and not self.per_sample(node))
         self.values = {node: k for k, node in enumerate(values)}
         self.kernel: list[str] = []
         self.functions: list[str] = []
@@ -83,7 +81,7 @@ class Writer:
         signals = {self.plan.outputs[reduction.name] for reduction in self.reductions}
         read_back = {
             x
-            for node in self.nodes
+            for node in self.plan.nodes
             for x in node.operands
             if self.per_sample(x) and x.operator != "input" and self.level(x) < self.level(node)
         }
@@ -204,7 +202,7 @@ class Writer:
             self._in_stages(bounds, loop, {*written})
         else:
             self._line(1, f"for j in in_vectors({bounds}, samples):")
-            self._operations(2, work, written)
+            self._operations(work, written)
 
     def _in_stages(self, bounds: str, loop: Pipeline, written: set[Node]) -> None:
         """Write a loop whose operations are done in this order, each in its stage of another vector."""
@@ -222,22 +220,22 @@ class Writer:
                 number, vectors = loop.places[x]
                 self._line(2, f"{self.name(x)} = waiting_{vectors}[{number}, {stage - loop.stages[x]}]")
                 self.known.add(self.name(x))
-            self._operations(2, [node], {node} & written)
+            self._operations([node], {node} & written)
             if place := loop.places.get(node):
                 self._line(2, f"waiting_{place.vectors}[{place.number}] = {self.name(node)}")
-        self._operations(2, [], written - loop.stages.keys())
+        self._operations([], written - loop.stages.keys())
         for k, (x, stage) in enumerate(loop.kept):
             self.stage = stage - 1
             self._line(2, f"kept[{k}] = {self.name(x)}")
         self.stages, self.stage = {}, 0
 
-    def _operations(self, depth: int, work: list[Node], written: Iterable[Node] = ()) -> None:
+    def _operations(self, work: list[Node], written: Iterable[Node]) -> None:
         """Write operations on samples, what they read, and where it is to be stored."""
         for node in in_order({*written, *operands(work), *work}):
             if self.per_sample(node) and self.name(node) not in self.known:
-                self._define(depth, node, self._expression(node) if node in work else self._sample(node))
+                self._define(2, node, self._expression(node) if node in work else self._sample(node))
             for cell in self._cells(node) if node in written else ():
-                self._line(depth, f"{cell} = {self.name(node)}")
+                self._line(2, f"{cell} = {self.name(node)}")
 
     def _needed(self, rows: Iterable[Node]) -> list[Node]:
         """Return all operations per sample on which rows depend, of every level."""
@@ -261,10 +259,6 @@ class Writer:
             yield f"scratch[{self.scratch[node]}, {self.number}]"
         if node in self.rows:
             yield f"block[{self._at('block', self.rows.index(node), node)}, {self.number}]"
-
-    def _row(self, node: Node) -> str:
-        """Return a node's row of scratch."""
-        return f"scratch[{self.scratch[node]}, :samples]"
 
     def _at(self, table: str, k: int, node: Node) -> str:
         """Return the position of a node's value for the current design: row-major over the node's own loops."""
@@ -291,11 +285,16 @@ class Writer:
             return f"{x[0]} {node.operator} {x[1]}"
         return f"-{x[0]}" if node.operator == "negate" else f"{node.operator}({', '.join(x)})"
 
+    def _reduced(self, level: int) -> dict[int, Node]:
+        """Return the signals of a level's reductions, by the numbers of these."""
+        signals = {k: self.plan.outputs[reduction.name] for k, reduction in enumerate(self.reductions)}
+        return {k: node for k, node in signals.items() if self.level(node) == level}
+
     def _reductions(self, level: int) -> None:
-        own = {k: self.plan.outputs[r.name] for k, r in enumerate(self.reductions)}
-        own = {k: node for k, node in own.items() if self.level(node) == level}
+        own = self._reduced(level)
         if own:
             self._function("reductions", level)
         for k, node in own.items():
             value, at = (f"single[{self._at('single', 2 * k + i, node)}]" for i in range(2))
-            self._line(1, f"{value}, {at} = {self.reductions[k].kind}({self._row(node)}, angles, work)")
+            row = f"scratch[{self.scratch[node]}, :samples]"
+            self._line(1, f"{value}, {at} = {self.reductions[k].kind}({row}, angles, work)")

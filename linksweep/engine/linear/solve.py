@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from functools import cached_property, lru_cache
 from typing import NamedTuple
 
 import numpy as np
 
 from linksweep.base.memory import require_memory
 from linksweep.engine import run
-from linksweep.engine.kernel.machine_code import INTEGERS, ROW, MachineCode
+from linksweep.engine.kernel.machine_code import INTEGERS, ROW
 from linksweep.engine.kernel.translate import translated
 from linksweep.engine.linear import elimination, lanes
 from linksweep.engine.patience import Patience
@@ -25,6 +24,8 @@ KINDS = (BLOCKS, "i8[:, :]", ROW, INTEGERS, BLOCKS, BLOCKS, BLOCKS)
 """Arguments of the functions of `elimination`."""
 SAMPLES_PER_THREAD = 10_000
 """Samples that pay for another thread: about a millisecond."""
+PATIENCE = defaultdict[str, Patience](Patience)
+"""What each function of `elimination` has interpreted, by its name."""
 
 
 class Structure(NamedTuple):
@@ -51,28 +52,14 @@ def condition(structure: Structure, values: Sequence[np.ndarray]) -> np.ndarray:
     return _run("condition", structure, values, (1, 2 * n + 1))[0]
 
 
-@dataclass(eq=False)
-class Solver(Patience):
-    """A function of `elimination`."""
-
-    name: str
-
-    @cached_property
-    def compiled(self) -> MachineCode:
-        return translated(getattr(elimination, self.name), KINDS)
-
-
-solver = lru_cache(maxsize=None)(Solver)
-"""Return the one `Solver` of this name."""
-
-
 def _run(name: str, structure: Structure, values: Sequence[np.ndarray], widths: tuple[int, int]) -> np.ndarray:
     """Return what a function of `elimination` writes; `widths` are its rows of results and the matrix's columns."""
     (rows, columns), samples = widths, len(values[0])
     require_memory(f"{rows * samples} numbers (results × designs × angles): ask for fewer", 8.0 * rows * samples)
     result = np.empty((rows, samples))
-    interpret = solver(name).should_interpret(10 * samples, run.COMPILE_AFTER)  # numpy is slower than the interpreter
-    function: Callable = getattr(elimination, name) if interpret else solver(name).compiled
+    interpret = PATIENCE[name].should_interpret(10 * samples, run.COMPILE_AFTER)  # numpy is slower than the interpreter
+    function: Callable = getattr(elimination, name)
+    function = function if interpret else translated(function, KINDS)
     width = min(AT_ONCE, samples) if interpret else lanes.LANES
     room = min(AT_ONCE, -(-samples // width) * width)
 

@@ -10,12 +10,12 @@ Source: Dowell and Jarratt, A modified regula falsi method, BIT 11 (1971).
 
 from linksweep.engine.kernel.instructions import call
 from linksweep.engine.near_zero.places import next_place
-from linksweep.engine.near_zero.samples import BEYOND, MOST, note, place, sample, upper_bound, used_columns
+from linksweep.engine.near_zero.samples import MOST, SPARE, note, place, sample, upper_bound, used_columns
 from linksweep.engine.peaks.zeros import (
     AT_TRIAL,
-    FOUND,
     HOLDS,
     OPEN,
+    SETTLED,
     SIDE,
     SIGNAL_NUMBER,
     STEPS,
@@ -34,11 +34,11 @@ def look_for_crossings(samples, noted, half, signal, signals, crossings, counts,
     """Open brackets of a signal's zeros about places on a piece, and note flat places; what may be noise counts as
     positive, and so does a sample without a value, which no bracket spans."""
     places = samples[2]
-    for step in range(places - 2 * BEYOND):
+    for step in range(places - 2 * SPARE):
         if noted < 1.0:
             break
         j, noted = next_place(noted, step)
-        inside = BEYOND < j < places - BEYOND
+        inside = SPARE < j < places - SPARE
         if inside and is_negative(samples, j, signal, signals) != is_negative(samples, j - 1, signal, signals):
             i, k = j - 1, j
             while i > 0 and may_be_noise(samples, i, signal, signals):
@@ -68,11 +68,11 @@ def may_be_noise(samples, j, signal, signals):
 
 def open_crossing(crossings, counts, lanes, lane, bracket, half, signal, owner, results):
     """Open a bracket about a zero."""
-    nth = int(counts[lane])
+    nth = counts[lane]
     if nth == MOST:
         results[1][owner] = 1.0
     else:
-        counts[lane] += 1.0
+        counts[lane] += 1
         open_zero(crossings, nth * lanes + lane, bracket, bracket[0], half, signal, owner, OPEN)
 
 
@@ -99,7 +99,7 @@ def find_zeros(crossings, counts, lanes, own, evaluate, front, results):
     columns = used_columns(counts, lanes)
     for k in range(columns):
         if k // lanes >= counts[k % lanes]:
-            crossings[HOLDS, k] = float(FOUND)
+            crossings[HOLDS, k] = float(SETTLED)
     for _ in range(STEPS):
         still_open = 0
         for k in range(columns):
@@ -110,6 +110,6 @@ def find_zeros(crossings, counts, lanes, own, evaluate, front, results):
         call(evaluate, (own, crossings, TRIAL, AT_TRIAL, SIDE, SIGNAL_NUMBER, 0, columns))
         narrow(crossings, columns)
     for k in range(columns):
-        if crossings[HOLDS, k] == FOUND and k // lanes < counts[k % lanes]:
+        if crossings[HOLDS, k] == SETTLED and k // lanes < counts[k % lanes]:
             zero, half, signal = crossings[STOP, k], crossings[SIDE, k], crossings[SIGNAL_NUMBER, k]
             note(results, front + k % lanes, zero, half, signal, 0.0)

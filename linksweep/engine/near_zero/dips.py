@@ -13,7 +13,7 @@ import math
 from linksweep.engine.kernel.instructions import call
 from linksweep.engine.near_zero.crossings import FLAT, open_crossing
 from linksweep.engine.near_zero.places import next_place
-from linksweep.engine.near_zero.samples import BEYOND, MOST, noise, note, place, sample, used_columns
+from linksweep.engine.near_zero.samples import MOST, SPARE, noise, note, place, sample, used_columns
 from linksweep.engine.peaks.brackets import (
     BRACKET_ROWS,
     DONE,
@@ -55,14 +55,14 @@ DIP_ROWS = BRACKET_ROWS + 11
 def look_for_dips(samples, noted, half, signal, signals, kind, dips, counts, owner, results):
     """Open brackets of a signal's dips about places on a piece; values that are noise apart are the same."""
     places = samples[2]
-    for step in range(places - 2 * BEYOND):
+    for step in range(places - 2 * SPARE):
         if noted < 1.0:
             break
         j, noted = next_place(noted, step)
         before, here, after = sample(samples, j - 1, signal), sample(samples, j, signal), sample(samples, j + 1, signal)
         side = 1.0 if here > 0.0 else -1.0
         sought = JUMP if kind == TOGGLE and side < 0.0 else kind
-        if BEYOND <= j < places - BEYOND and side * here <= side * before and side * here < side * after:
+        if SPARE <= j < places - SPARE and side * here <= side * before and side * here < side * after:
             higher, i, k = side * here + noise(samples, j, signal, signals), j - 1, j + 1
             while i > 0 and side * sample(samples, i, signal) <= higher:
                 i -= 1
@@ -86,12 +86,12 @@ def may_matter(a, f_a, b, f_b, c, f_c, kind):
 
 def open_dip(dips, counts, lanes, lane, bracket, half, number, signal, owner, results):
     """Open the bracket of a dip."""
-    nth = int(counts[lane])
+    nth = counts[lane]
     if nth == MOST:
         results[1][owner] = 1.0
     else:
         k, (before, top, after) = nth * lanes + lane, bracket
-        counts[lane] += 1.0
+        counts[lane] += 1
         open_bracket(dips, k, before, top, after, half, number, owner, 0.0)
         (dips[A, k], dips[F_A, k]), (dips[C, k], dips[F_C, k]) = before, after
         dips[OWN, k], dips[COUNTS, k] = signal, 1.0
@@ -103,18 +103,18 @@ def refine_dips(dips, counts, lanes, own, evaluate):
     for k in range(columns):
         if k // lanes >= counts[k % lanes]:
             dips[COUNTS, k] = 0.0
+    still_open = columns
     for _ in range(ROUNDS):
-        still_open = 0
-        for k in range(columns):
-            still_open += 1 if dips[COUNTS, k] > 0.0 else 0
         if still_open == 0:
             break
         place_trials(dips, columns)
         evaluate_trials(dips, 0, columns, own, evaluate)
         insert_trials(dips, columns)
+        still_open = 0
         for k in range(columns):
             if dips[COUNTS, k] > 0.0 and dips[DONE, k] > 0.0:
                 dips[TOP, k], dips[F_TOP, k], dips[COUNTS, k] = dips[TOP_X, k], dips[FB, k], 0.0
+            still_open += 1 if dips[COUNTS, k] > 0.0 else 0
 
 
 def check_noise(dips, counts, lanes, signals, own, evaluate, front, results):
@@ -133,7 +133,7 @@ def open_sides(dips, counts, lanes, signals, kinds, crossings, crossed, front, r
     """Open brackets of the zeros on both sides of dips beyond zero; the others count, but those of jumps, and those of
     toggles where the machine does not close."""
     for lane in range(lanes):
-        for nth in range(int(counts[lane])):
+        for nth in range(counts[lane]):
             k, owner = nth * lanes + lane, front + lane
             top, f_top, signal, half = dips[TOP, k], dips[F_TOP, k], dips[OWN, k], dips[FAR, k]
             kind, new = kinds[int(signal)], not is_known(dips, nth, lanes, lane)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from linksweep.engine.kernel.machine_code import INTEGER, ROW, TABLE
+from linksweep.engine.kernel.machine_code import INTEGER, INTEGERS, ROW, TABLE
 from linksweep.engine.near_zero import dips, samples, search
 from linksweep.engine.peaks.laid_out import OF_DESIGNS, laid_out, over_blocks
 from linksweep.engine.peaks.samples import HALF
@@ -12,7 +12,7 @@ from linksweep.engine.peaks.zeros import ZERO_ROWS
 from linksweep.engine.run import Fields
 from linksweep.engine.trace.plan import Plan
 
-KINDS = (*[INTEGER] * 4, *OF_DESIGNS, "f8[:, :, :]", ROW, *[TABLE] * 3, ROW, TABLE, ROW, "f8[:, :, :]", ROW)
+KINDS = (*[INTEGER] * 4, *OF_DESIGNS, "f8[:, :, :]", ROW, *[TABLE] * 3, INTEGERS, TABLE, INTEGERS, "f8[:, :, :]", ROW)
 """Kinds of the arguments of `search.find_near_zero`."""
 
 
@@ -28,15 +28,16 @@ def dips_and_zeros(
     divided = ends.shape[2] > len(samples.ENDS)
     designs = laid_out(plan, inputs, {dim: ends.shape[1]}, samples.HALF if divided else HALF, samples.EVENLY)
     run = designs.run(search.find_near_zero, KINDS)
-    places, columns = 2 * (designs.half + samples.BEYOND) + 1, samples.MOST * designs.lanes
+    places, columns = 2 * (designs.half + samples.SPARE) + 1, samples.MOST * designs.lanes
     events = np.full((samples.EVENT_ROWS, designs.designs, samples.MOST), np.nan)
     left = np.zeros(designs.designs)
 
     def work(first: int, last: int) -> None:
+        counts = np.zeros((2, designs.lanes), dtype=np.int64)
         run(
             first, last, designs.designs, designs.lanes, *designs.arguments(first, last, places), ends, kinds,
-            *np.zeros((2, 1, len(kinds) * designs.lanes)), np.zeros((dips.DIP_ROWS, columns)), np.zeros(designs.lanes),
-            np.zeros((ZERO_ROWS, columns)), np.zeros(designs.lanes), events, left,
+            *np.zeros((2, 1, len(kinds) * designs.lanes)), np.zeros((dips.DIP_ROWS, columns)), counts[0],
+            np.zeros((ZERO_ROWS, columns)), counts[1], events, left,
         )  # fmt: skip
 
     over_blocks(work, designs.blocks, designs.designs)

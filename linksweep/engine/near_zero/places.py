@@ -3,18 +3,18 @@
 The places of a lane are the digits of one number, so that noting one takes a product and a choice.
 """
 
-from linksweep.engine.near_zero.samples import BEYOND
+from linksweep.engine.near_zero.samples import SPARE
 from linksweep.engine.peaks.lanewise import around
 
 BASE = 128
 """Base of the digits: more than there are places."""
 TOO_MANY = float(BASE**7)
 """Least number of more digits than a number holds exactly: then each place is looked at."""
-PLACES = 0
+NOTES = 0
 """Row of numbers that hold the places of lanes."""
 
 
-@around({PLACES: 0.0})
+@around({NOTES: 0.0})
 def note_dips(left, first, second, right, number, noted):
     """Note the samples that lie nearer to zero than those beside them, or as near as the one before."""
     noted = with_dip(left, first, second, number, noted)
@@ -28,7 +28,7 @@ def with_dip(before, here, after, number, noted):
     return (before < size).where(noted, (size < after).where(noted * BASE + number, noted))
 
 
-@around({PLACES: 0.0})
+@around({NOTES: 0.0})
 def note_crossings(left, first, second, _right, number, noted):
     """Note the samples with another sign than the one before."""
     noted = with_crossing(left, first, number, noted)
@@ -44,5 +44,5 @@ def with_crossing(before, here, number, noted):
 def next_place(noted, step):
     """Return one of the places noted, and the others; of too many, that of a step."""
     if noted >= TOO_MANY:
-        return BEYOND + step, noted
+        return SPARE + step, noted
     return int(noted) % BASE, float(int(noted) // BASE)

@@ -11,19 +11,20 @@ is `FAR_HALF`, so that places go on from one half turn to the other.
 All is plain Python that is translated to machine code.
 """
 
-from linksweep.engine.peaks.samples import GRADES
+from linksweep.engine.peaks.on_pieces import largest_count
+from linksweep.engine.peaks.samples import grade
 
 HALF, EVENLY = 40, 0.4
 """Samples on either side of the middle of a piece of a turn that is divided at near-toggles, and the share of them that
 are spread evenly: they lie no farther apart than those of a turn that is not."""
-BEYOND, FARTHER = 2, 8
+SPARE, FARTHER = 2, 8
 """Samples beyond either end of a piece, and how many steps from there the farther one lies; the other lies one away."""
 BORDER = 1.0837
 """Tangent at the end of a half turn: off round angles, where machines have their toggles, and signals their zeros."""
 FAR_HALF = BORDER + 1.0 / BORDER
 ENDS = (-1.0 / BORDER, BORDER, FAR_HALF + BORDER)
 """Places of the ends of half turns."""
-END, END_WIDTH = range(2)
+AT, AT_WIDTH = range(2)
 """Rows of ends of pieces (row, design, nth), in order: their places, and the half-widths of near-toggles there, 0 of
 toggles."""
 INSIDE = 1e-11
@@ -42,36 +43,27 @@ NOISE_SHARE = 0.04
 
 def place_samples(ends, owner, nth, lanes, lane, places, grades, x):
     """Place the samples of a piece, and more beyond its ends; return 1, or 0 where a design has no such piece."""
-    start, end, steps = ends[END, owner, nth], ends[END, owner, nth + 1], grades.shape[1] - 1
+    start, end, steps = ends[AT, owner, nth], ends[AT, owner, nth + 1], grades.shape[1] - 1
     if end != end:
         return 0
     half = 1.0 if start >= BORDER else 0.0
     start, end = start - half * FAR_HALF, end - half * FAR_HALF
     reach = 0.5 * (end - start)
-    near, far = grade(ends[END_WIDTH, owner, nth], reach), grade(ends[END_WIDTH, owner, nth + 1], reach)
+    near, far = grade(ends[AT_WIDTH, owner, nth], reach), grade(ends[AT_WIDTH, owner, nth + 1], reach)
     for k in range(steps + 1):
-        x[(BEYOND + k) * lanes + lane] = start + reach * grades[near, k]
+        x[(SPARE + k) * lanes + lane] = start + reach * grades[near, k]
     for k in range(steps + 1):
-        x[(places - 1 - BEYOND - k) * lanes + lane] = end - reach * grades[far, k]
-    if ends[END_WIDTH, owner, nth] == 0.0:
-        x[BEYOND * lanes + lane] = start + reach * INSIDE
-    if ends[END_WIDTH, owner, nth + 1] == 0.0:
-        x[(places - 1 - BEYOND) * lanes + lane] = end - reach * INSIDE
+        x[(places - 1 - SPARE - k) * lanes + lane] = end - reach * grades[far, k]
+    if ends[AT_WIDTH, owner, nth] == 0.0:
+        x[SPARE * lanes + lane] = start + reach * INSIDE
+    if ends[AT_WIDTH, owner, nth + 1] == 0.0:
+        x[(places - 1 - SPARE) * lanes + lane] = end - reach * INSIDE
     for k, step in ((0, FARTHER), (1, 1)):
         x[k * lanes + lane] = start - reach * grades[near, step]
         x[(places - 1 - k) * lanes + lane] = end + reach * grades[far, step]
     for k in range(places):
         x[(places + k) * lanes + lane] = half
     return 1
-
-
-def grade(width, reach):
-    """Return the first grade of samples whose scale does not exceed a half-width."""
-    number, scale = 0, reach
-    while width < scale and number < GRADES - 1:
-        number += 1
-        scale *= 0.5
-    return number
 
 
 def sample(samples, j, signal):
@@ -118,7 +110,4 @@ def note(results, owner, tangent, half, signal, width):
 
 def used_columns(counts, lanes):
     """Return the number of columns that hold the counted ones of all lanes: the nth of a lane is in n·lanes + lane."""
-    most = 0.0
-    for lane in range(lanes):
-        most = max(most, counts[lane])
-    return int(most) * lanes
+    return largest_count(counts, 0, lanes) * lanes

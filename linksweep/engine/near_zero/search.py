@@ -9,8 +9,8 @@ opened about dips (`dips.py`) and zeros (`crossings.py`), which are then refined
 from linksweep.engine.kernel.instructions import call
 from linksweep.engine.near_zero.crossings import find_zeros, look_for_crossings
 from linksweep.engine.near_zero.dips import check_noise, look_for_dips, measure_widths, open_sides, refine_dips
-from linksweep.engine.near_zero.places import PLACES, note_crossings, note_dips
-from linksweep.engine.near_zero.samples import END, place_samples
+from linksweep.engine.near_zero.places import NOTES, note_crossings, note_dips
+from linksweep.engine.near_zero.samples import AT, place_samples
 
 
 def find_near_zero(
@@ -29,7 +29,7 @@ def find_near_zero(
         call(prepare, (front, designs, sizes, parameters, parameter_at, own))
         used = min(lanes, designs - front)
         for lane in range(lanes):
-            dipped[lane], crossed[lane] = 0.0, 0.0
+            dipped[lane], crossed[lane] = 0, 0
         for nth in range(ends.shape[2] - 1):
             pieces = 0
             for lane in range(used):
@@ -39,15 +39,15 @@ def find_near_zero(
                 note_dips(rows, places - 1, columns, near)
                 note_crossings(rows[2 * signals * lanes :], places - 1, columns, beyond)
                 for lane in range(used):
-                    if ends[END, front + lane, nth + 1] == ends[END, front + lane, nth + 1]:
+                    if ends[AT, front + lane, nth + 1] == ends[AT, front + lane, nth + 1]:
                         samples, half = (rows, x, places, columns, lanes, lane), x[places * lanes + lane]
                         for signal in range(signals):
                             kind, owner, k = kinds[signal], front + lane, signal * lanes + lane
                             look_for_dips(
-                                samples, near[PLACES, k], half, signal, signals, kind, dips, dipped, owner, results
+                                samples, near[NOTES, k], half, signal, signals, kind, dips, dipped, owner, results
                             )
                             look_for_crossings(
-                                samples, beyond[PLACES, k], half, signal, signals, crossings, crossed, owner, results
+                                samples, beyond[NOTES, k], half, signal, signals, crossings, crossed, owner, results
                             )
         refine_dips(dips, dipped, lanes, own, evaluate)
         check_noise(dips, dipped, lanes, signals, own, evaluate, front, results)

@@ -9,7 +9,7 @@ A bracket closes when its extended secants allow no further rise: a concave curv
 
 import math
 
-from linksweep.engine.kernel.instructions import call
+from linksweep.engine.kernel.instructions import REGISTER, call
 from linksweep.engine.peaks.lanewise import lanewise
 
 ROUNDS = 400
@@ -24,8 +24,6 @@ RISE = 1e-11
 """Rise that may remain possible when a bracket closes, relative to the peak: a tenth of the promised 1e-10."""
 NOISE = 1e-15
 """Rounding noise of a signal, relative to its largest magnitude."""
-BLOCK = 8
-"""Brackets per block: unused columns of the last block hold arbitrary numbers."""
 
 # rows of `brackets`: the three points; half turn, number of the signal, column of `best`; width, at the last round and
 # at first; noise of the signal. These last from round to round
@@ -43,8 +41,8 @@ EVALUATIONS = BEST_ROWS
 
 
 def in_blocks(count):
-    """Return the number of columns of whole blocks that hold `count` brackets."""
-    return (count + BLOCK - 1) // BLOCK * BLOCK
+    """Return the number of columns, in whole registers, that hold `count` brackets: the last ones hold any numbers."""
+    return -(-count // REGISTER) * REGISTER
 
 
 def open_bracket(brackets, k, before, middle, after, far, signal, tag, floor):

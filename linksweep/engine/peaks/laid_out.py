@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from functools import cache, lru_cache
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -27,8 +27,6 @@ DESIGNS_PER_THREAD = 1000
 OF_DESIGNS = (INTEGERS, ROW, INTEGERS, TABLE, *[INTEGER] * 4, TABLE, ROW, ROW)
 ON_PIECES = (*OF_DESIGNS[:-2], TABLE, TABLE)
 """Kinds of the arguments that `LaidOut.arguments` makes, and `LaidOut.arguments_of_pieces`."""
-compiled = cache(translated)
-"""Return a search of these kinds of arguments as machine code."""
 evaluators_of = lru_cache(maxsize=256)(Evaluators)
 """Return the `Evaluators` of these arguments, one for all requests."""
 
@@ -61,7 +59,7 @@ class LaidOut(NamedTuple):
 
     def run(self, search: Callable, kinds: tuple[str, ...]) -> Callable:
         """Return a search of arguments of these kinds: interpreted, or compiled as the functions are."""
-        return compiled(search, kinds) if self.lanes > 1 else search
+        return translated(search, kinds) if self.lanes > 1 else search
 
     def arguments(self, first: int, last: int, places: int | None = None) -> tuple[Any, ...]:
         """Return the arguments that searches of blocks `first` … `last` have in common, with new arrays to work in: for

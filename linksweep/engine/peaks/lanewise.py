@@ -45,8 +45,9 @@ class Lanewise:
         for row, node in zip(self.outputs, results, strict=True):
             table[row, columns] = values[node]
 
+    @cached_property
     def compiled(self) -> MachineCode:
-        """Return the function of a table and the number of its first columns that count as machine code."""
+        """The function of a table and the number of its first columns that count as machine code."""
         return machine_code(self.emit, (TABLE, INTEGER), self.text)
 
     @property
@@ -133,6 +134,7 @@ class Around(Lanewise):
     def text(self) -> str:
         return f"{super().text} {self.start}"
 
+    @cached_property
     def compiled(self) -> MachineCode:
         return machine_code(self.emit, (ROW, INTEGER, INTEGER, TABLE), self.text)
 

@@ -33,7 +33,7 @@ OF_PIECE = EVALUATIONS + 1
 # may reach
 PLACE, SIGNAL, OF_DESIGN, AT, HEIGHT, NEXT = range(6)
 SUMMIT_ROWS = 6
-HIDDEN = 0.1
+HIDDEN_RISE = 0.1
 """Most that a signal may rise between a sample and its neighbours if these are as high, relative to the fall to the
 next ones. About the end of a piece signals are even, and a quartic rises by 1/48."""
 
@@ -58,7 +58,7 @@ def search(
         stop, count = min(start + together, last), 0
         for block in range(start, stop):
             front = block * lanes
-            for piece in range(most_pieces(counts, front, lanes)):
+            for piece in range(largest_count(counts, front, lanes)):
                 row = (block - start) * pieces + piece
                 sample_piece(front, piece, designs, lanes, of_designs, sampling, tables, row)
                 compare(rows[row], columns, half, state)
@@ -73,8 +73,8 @@ def search(
             keep_highest(tops, place, lanes, counts[design], best, design, designs)
 
 
-def most_pieces(counts, front, lanes):
-    """Return the largest number of pieces of designs side by side."""
+def largest_count(counts, front, lanes):
+    """Return the largest of the numbers that are counted for designs side by side."""
     most = 0
     for design in range(front, min(front + lanes, len(counts))):
         most = max(most, counts[design])
@@ -124,7 +124,7 @@ def hidden_height(rows, at, columns, k):
     """Return the height that a signal may reach between a sample and neighbours as high: by the fall beyond them."""
     value = rows[at * columns + k]
     fall = max(0.0, max(value - rows[(at - 2) * columns + k], value - rows[(at + 2) * columns + k]))
-    return value + HIDDEN * fall
+    return value + HIDDEN_RISE * fall
 
 
 def drop_lower(summits, count, highest):

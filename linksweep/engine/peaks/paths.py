@@ -8,14 +8,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from functools import cache
 
 import numpy as np
 
 from linksweep.engine.kernel.machine_code import INTEGER, INTEGERS, TABLE
+from linksweep.engine.kernel.translate import translated
 from linksweep.engine.peaks import brackets
 from linksweep.engine.peaks.brackets import BEYOND, PEAK, PEAK_X, open_bracket
-from linksweep.engine.peaks.laid_out import compiled
 from linksweep.engine.peaks.summits import might_reach, noise
 
 INTERPRETED_SAMPLES = 100_000
@@ -39,7 +38,7 @@ def open_brackets(rows: Array, x: Array, before: Array, after: Array, joined: bo
     Samples `rows` (path, signal, sample) are at `x` (path, sample), their neighbours at `before` and `after`. `joined`
     tells whether the ends of a path meet.
     """
-    run: Callable = compiled(open_on_paths, OF_PATHS) if rows.size > INTERPRETED_SAMPLES else open_on_paths
+    run: Callable = translated(open_on_paths, OF_PATHS) if rows.size > INTERPRETED_SAMPLES else open_on_paths
     arrays, places = map(np.ascontiguousarray, (rows, x, before, after)), np.empty(x.shape[1], dtype=np.int64)
     return run(*arrays, joined, table, best, places)
 
@@ -47,8 +46,9 @@ def open_brackets(rows: Array, x: Array, before: Array, after: Array, joined: bo
 def refine(samples: int, table: Array, count: int, best: Array, values: Values) -> None:
     """Refine brackets, the first `count` of a table, until none is left; `best` takes the peaks of their tags. They are
     refined by machine code where there were many samples."""
-    steps = brackets.place_trials, brackets.insert_trials, brackets.advance
-    place_trials, insert_trials, advance = _compiled_steps() if samples > INTERPRETED_SAMPLES else steps
+    compiled, steps = samples > INTERPRETED_SAMPLES, (brackets.place_trials, brackets.insert_trials)
+    place_trials, insert_trials = (step.compiled if compiled else step for step in steps)
+    advance = translated(brackets.advance, (TABLE, INTEGER, TABLE)) if compiled else brackets.advance
     trials, values_there = (slice(first, first + len(brackets.TRIALS)) for first in (brackets.X1, brackets.F1))
     for _ in range(brackets.ROUNDS):
         if not count:
@@ -58,12 +58,6 @@ def refine(samples: int, table: Array, count: int, best: Array, values: Values) 
         table[values_there, :count] = values(tag, table[trials, :count].ravel()).reshape(-1, count)
         insert_trials(table, count)
         count = advance(table, count, best)
-
-
-@cache
-def _compiled_steps() -> tuple[Callable, Callable, Callable]:
-    advance = compiled(brackets.advance, (TABLE, INTEGER, TABLE))
-    return brackets.place_trials.compiled(), brackets.insert_trials.compiled(), advance
 
 
 # ------------------------------------------------------------------ plain Python that is translated to machine code

@@ -24,7 +24,7 @@ ALONG, END = "piece_tangent", "piece_end"
 the angle from the piece's start or end, and which of the two."""
 ANYWHERE, OF_HALF = "tangent_anywhere", "half_anywhere"
 """Inputs that place a sample anywhere on a turn instead: tangent and half turn, as above."""
-WIDTHS = NEAR_WIDTH, FAR_WIDTH = "near_toggle_near", "near_toggle_far"
+WIDTHS = "near_toggle_near", "near_toggle_far"
 """Widths of the near-toggles in those middles."""
 
 

@@ -45,3 +45,12 @@ def grades(half: int = HALF, evenly: float = EVENLY) -> np.ndarray:
     table = scale * np.sinh(y)
     table[:, -1] = 1.0
     return table
+
+
+def grade(width, scale):
+    """Return the first grade of samples whose scale does not exceed a half-width; that of the first is `scale`."""
+    number = 0
+    while width < scale and number < GRADES - 1:
+        number += 1
+        scale *= 0.5
+    return number

@@ -15,7 +15,7 @@ import math
 from linksweep.engine.kernel.instructions import call
 from linksweep.engine.peaks.brackets import BEYOND, EVALUATIONS, NOISE, PEAK, PEAK_FAR, PEAK_X, RISE, larger, refine
 from linksweep.engine.peaks.lanewise import around, copy_lanes, lanewise
-from linksweep.engine.peaks.samples import GRADES, HALF, SAMPLES
+from linksweep.engine.peaks.samples import HALF, SAMPLES, grade
 from linksweep.engine.peaks.summits import might_reach, open_brackets, slopes_between
 from linksweep.engine.trace.arctangent import arctangent
 from linksweep.engine.trace.graph import Node
@@ -26,7 +26,7 @@ CLOSER = 0.125
 """Part of the width of a near-toggle by which samples are placed where they may lie too far apart."""
 BLOCKS = 32
 """Blocks of designs whose brackets are refined together."""
-NARROW = 1e-3
+NARROW_TOGGLE = 1e-3
 """Half-width of a near-toggle below which samples may lie too far apart: each is then 1.4 to 2.4 times as far from the
 near-toggle as the last one, and two of a million searches missed a summit between neighbours."""
 ROOM = 4 * SAMPLES
@@ -90,7 +90,7 @@ def search(
                 for row in range(EVALUATIONS + 1):
                     copy_lanes(state, row, column, best, tag, lanes)
                 for lane in range(lanes):
-                    close = sparse or min(own[lane], own[lanes + lane]) < NARROW
+                    close = sparse or min(own[lane], own[lanes + lane]) < NARROW_TOGGLE
                     if close or not smooth or state[FINAL, column + lane] == 0.0:
                         if count + 2 * SAMPLES > brackets.shape[1]:
                             refine(brackets, count, lanes, width, start * lanes, constants, gathered, evaluate, best)
@@ -129,15 +129,12 @@ def place_samples(constants, lanes, grades, part, x):
     for far in range(2):
         middle = (far * placed + 1 + half) * lanes
         for lane in range(lanes):
-            grade, scale = 0, 1.0  # the first scale that does not exceed it
-            while part * constants[far * lanes + lane] < scale and grade < GRADES - 1:
-                grade += 1
-                scale *= 0.5
-            if x[middle + lanes + lane] != grades[grade, 1]:
+            own = grade(part * constants[far * lanes + lane], 1.0)
+            if x[middle + lanes + lane] != grades[own, 1]:
                 changed += 1
                 for k in range(half + 1):
-                    x[middle - k * lanes + lane] = -grades[grade, k]
-                    x[middle + k * lanes + lane] = grades[grade, k]
+                    x[middle - k * lanes + lane] = -grades[own, k]
+                    x[middle + k * lanes + lane] = grades[own, k]
     for far in range(2):  # measured from the other middle, 180 degrees away, a tangent is minus its inverse
         for lane in range(lanes):
             x[far * placed * lanes + lane] = -1.0 / x[((1 - far) * placed + 2 * half) * lanes + lane]

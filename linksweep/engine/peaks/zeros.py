@@ -14,7 +14,7 @@ import math
 from linksweep.engine.kernel.instructions import call
 from linksweep.engine.peaks.brackets import gather
 from linksweep.engine.peaks.lanewise import lanewise
-from linksweep.engine.peaks.on_pieces import most_pieces, sample_piece
+from linksweep.engine.peaks.on_pieces import largest_count, sample_piece
 
 MOST_ZEROS = 12
 """Zeros of one piece, at most."""
@@ -27,7 +27,7 @@ CLOSED = 1e-15
 # signal, row and lane of the piece; whether the bracket holds a zero
 START, AT_START, STOP, AT_STOP, TRIAL, AT_TRIAL, SIDE, SIGNAL_NUMBER, OWNER, HOLDS = range(10)
 ZERO_ROWS = 10
-UNKNOWN, NONE, OPEN, FOUND = range(4)
+UNKNOWN, NONE, OPEN, SETTLED = range(4)
 
 
 def find_zeros(
@@ -43,7 +43,7 @@ def find_zeros(
         count = 0
         for block in range(start, min(start + together, last)):
             front = block * lanes
-            for piece in range(most_pieces(counts, front, lanes)):
+            for piece in range(largest_count(counts, front, lanes)):
                 row = (block - start) * pieces + piece
                 sample_piece(front, piece, designs, lanes, of_designs, sampling, tables, row)
                 for lane in range(min(lanes, designs - front)):
@@ -123,11 +123,11 @@ def narrow(a, f_a, b, f_b, x, f, holds):
     """Make the trials of open brackets their ends, by the Illinois method; one is closed where that hardly moves the
     end."""
     f = (f < 0.0).where(f, (f > 0.0).where(f, 0.0))  # where there is no value, the place itself is near enough
-    closed = (abs(f) > 0.0).where((abs(x - b) < CLOSED).where(FOUND, holds), FOUND)
+    closed = (abs(f) > 0.0).where((abs(x - b) < CLOSED).where(SETTLED, holds), SETTLED)
     ends = zip((a, 0.5 * f_a), (b, f_b), strict=True)
     start = (by_signs(f, f_b, same, other) for same, other in ends)
     new, old = (*start, x, f, closed), (a, f_a, b, f_b, holds)
-    return tuple((holds > NONE).where((holds < FOUND).where(p, q), q) for p, q in zip(new, old, strict=True))
+    return tuple((holds > NONE).where((holds < SETTLED).where(p, q), q) for p, q in zip(new, old, strict=True))
 
 
 def by_signs(x, y, same, other):
@@ -139,7 +139,7 @@ def drop_closed(zeros_at, count, start, lanes, pieces, zeros):
     """Note the zeros that are found; return how many brackets remain."""
     still_open = 0
     for k in range(count):
-        if zeros_at[HOLDS, k] == FOUND:
+        if zeros_at[HOLDS, k] == SETTLED:
             row, lane = int(zeros_at[OWNER, k]) // lanes, int(zeros_at[OWNER, k]) % lanes
             design = (start + row // pieces) * lanes + lane
             note_zero(zeros, design * pieces + row % pieces, zeros_at[STOP, k], zeros_at[SIDE, k])

@@ -50,21 +50,18 @@ class Traced(NamedTuple):
     results: list[Node]
 
 
-def traced(function: Callable[..., Iterable[Node | float]], count: int) -> Traced:
-    """Trace a function of so many numbers."""
-    return _traced(Simplified(), function, count)
+def traced(function: Callable[..., Iterable[Node | float]], count: int, kind: type[Graph] = Simplified) -> Traced:
+    """Trace a function of so many numbers into a graph of this kind."""
+    graph = kind()
+    inputs = [graph.input(f"input {k}", ()) for k in range(count)]
+    results = [graph.node(result) for result in function(*inputs)]
+    return Traced(inputs, graph.nodes[count:], results)
 
 
 @cache
 def traced_arctangent() -> Traced:
     """Return the arctangent of y and x as traced operations, contracted."""
-    written = _traced(Graph(), lambda y, x: [arctangent(y, x, Node.where)], 2)
+    written = traced(lambda y, x: [arctangent(y, x, Node.where)], 2, Graph)
     values = contracted((*written.inputs, *written.results), {}).values
     inputs, results = ([values[node] for node in nodes] for nodes in (written.inputs, written.results))
     return Traced(inputs, [node for node in leading_to(results) if node not in inputs], results)
-
-
-def _traced(graph: Graph, function: Callable[..., Iterable[Node | float]], count: int) -> Traced:
-    inputs = [graph.input(f"input {k}", ()) for k in range(count)]
-    results = [graph.node(result) for result in function(*inputs)]
-    return Traced(inputs, graph.nodes[count:], results)

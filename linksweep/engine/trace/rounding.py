@@ -20,7 +20,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 
-from linksweep.engine.trace.graph import LOW_WORDS, Node
+from linksweep.engine.trace.graph import LOW_WORDS, Node, depth_first
 
 UNIT = 2.0**-53 * (1.0 + 2.0**-20)
 """Half a unit in the last place; the factor beyond 1 covers the rounding of the bound itself."""
@@ -50,16 +50,8 @@ def relative_bound(
 
 def _bound(result: Node, known: dict[Node, Node], exact: Callable[[str], bool]) -> Node:
     """Return a bound on the absolute error of a result; `known` keeps those of all operations on the way."""
-    waiting = [result]
-    while waiting:
-        node = waiting[-1]
-        missing = [x for x in node.operands if x not in known]
-        if missing:
-            waiting.extend(missing)
-        else:
-            waiting.pop()
-            if node not in known:
-                known[node] = _propagated(node, [known[x] for x in node.operands], exact)
+    for node in depth_first({result} - known.keys(), {*result.graph.nodes} - known.keys()):
+        known[node] = _propagated(node, [known[x] for x in node.operands], exact)
     return known[result]
 
 

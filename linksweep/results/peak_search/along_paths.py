@@ -38,6 +38,8 @@ TERMS = np.cos(np.outer(ANGLES, np.arange(NODES))) * np.append(1.0, np.full(NODE
 """Chebyshev's angles of samples, and the terms of the polynomial through values there, at the angle 0."""
 PROBE, LEAST_PROBE = 0.025, 1e-5
 """Distance from the end, as part of a step and at least, of the sample that shows whether a signal is unbounded."""
+GROWTH, OF_PEAK = 5.0, 0.1
+"""Least growth of an unbounded signal over a tenth of that distance, and its least size there, relative to its peak."""
 ATTAINED = 1e-9
 """Difference of a peak and the value at its angle, relative to the peak, beyond which it is a limit at a jump."""
 NEAR_PERIOD = 5e-6
@@ -340,7 +342,7 @@ def _limits(group: Group, signals: tuple[str, ...], paths: Paths, end: int, peak
     probe, closer = np.moveaxis(values_at(np.arange(len(signals)), np.arange(len(step)), probes), 2, 0)
     with np.errstate(invalid="ignore"):
         # ten times closer in x: a signal that varies as 1/x is ten times as large, a signal with a limit hardly changes
-        infinite = (np.abs(closer) > 5.0 * np.abs(probe)) & (np.abs(closer) > 0.1 * np.nan_to_num(np.abs(peak)))
+        infinite = (np.abs(closer) > GROWTH * np.abs(probe)) & (np.abs(closer) > OF_PEAK * np.nan_to_num(np.abs(peak)))
         highest = closer + np.abs(closer - probe)
         limit, error, samples = limits_by_polynomials(values_at, step, ~infinite & (highest >= peak))
         limit = np.where(infinite, np.copysign(np.inf, closer), np.minimum(limit, highest))

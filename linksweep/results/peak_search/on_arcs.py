@@ -13,7 +13,15 @@ import numpy as np
 
 from linksweep.engine.peaks.samples import HALF
 from linksweep.engine.quantity import LAST_UNJAMMED
-from linksweep.results.peak_search.along_paths import Best, SignalPeak, angle_in_period, limits_by_polynomials, raise_to
+from linksweep.results.peak_search.along_paths import (
+    GROWTH,
+    OF_PEAK,
+    Best,
+    SignalPeak,
+    angle_in_period,
+    limits_by_polynomials,
+    raise_to,
+)
 from linksweep.results.peak_search.arcs import NEAREST, arc_ends, steps_at_ends
 from linksweep.results.peak_search.between import driven_elsewhere
 from linksweep.results.peak_search.groups import Group, groups
@@ -38,8 +46,6 @@ from linksweep.scene.scene import Scene
 PROBES = 10.0, 1.0
 """Distances from a toggle, as multiples of that of the closest sample, of those that show whether a signal is
 unbounded."""
-GROWTH, LARGE = 5.0, 0.1
-"""Growth from the one to the other of an unbounded signal, and its size there, relative to its peak elsewhere."""
 SURELY = 1e3
 """Size there, relative to that in the middle of the arc, from which on it has no peak elsewhere."""
 LONGEST = 120.0
@@ -147,7 +153,7 @@ def _highest(group: Group, arcs: Arcs, signals: tuple[str, ...]) -> tuple[Best, 
         grows, change = known[:, None] & (np.abs(closer) > GROWTH * np.abs(farther)), np.abs(closer - farther)
         infinite = grows & (closer > SURELY * middle)
         best = _on_pieces(group, arcs, signals, known & ~infinite.any(axis=2))
-        grows &= np.abs(closer) > LARGE * np.abs(best.value)[..., None]
+        grows &= np.abs(closer) > OF_PEAK * np.abs(best.value)[..., None]
         infinite |= grows & (closer > 0.0)
         limited = known[:, None] & ~grows & (closer + change >= best.value[..., None])
     limited &= ~infinite.any(axis=2, keepdims=True)

@@ -33,14 +33,14 @@ def near_zero(height, kind, cuts=(), noise=NOISE):
 
     ends = np.array(sorted([(place, 1.0) for place in samples.ENDS] + [(place_of(a), width) for a, width in cuts]))
     half = samples.HALF if len(cuts) else 24
-    places, one = 2 * (half + samples.BEYOND) + 1, np.ones(1, dtype=np.int64)
+    places, one = 2 * (half + samples.SPARE) + 1, np.ones(1, dtype=np.int64)
     events, left = np.full((samples.EVENT_ROWS, 1, samples.MOST), np.nan), np.zeros(1)
     with np.errstate(all="ignore"):
         search.find_near_zero(
             0, 1, 1, 1, one, np.zeros(1), 0 * one, grades(half, samples.EVENLY), prepare, lambda *_: None, sample,
             evaluate, np.zeros((1, 2)), np.zeros(2 * places), np.zeros(3 * places), ends.T[:, None, :],
-            np.array([kind]), *np.zeros((2, 1, 1)), np.zeros((dips.DIP_ROWS, samples.MOST)), np.zeros(1),
-            np.zeros((ZERO_ROWS, samples.MOST)), np.zeros(1), events, left,
+            np.array([kind]), *np.zeros((2, 1, 1)), np.zeros((dips.DIP_ROWS, samples.MOST)), 0 * one,
+            np.zeros((ZERO_ROWS, samples.MOST)), 0 * one, events, left,
         )  # fmt: skip
     place, far, _, width = events[:, 0, np.isfinite(events[0, 0])]
     assert ((place >= samples.ENDS[0]) & (place <= samples.BORDER)).all()

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from linksweep.engine.near_zero import places
-from linksweep.engine.near_zero.samples import BEYOND, HALF
+from linksweep.engine.near_zero.samples import HALF, SPARE
 from linksweep.engine.peaks.samples import HALF as HALF_OF_TURN
 
 COUNT, COLUMNS = 24, 8
@@ -16,7 +16,7 @@ def listed(note, rows):
     with np.errstate(all="ignore"):
         note(rows.ravel(), len(rows), rows.shape[1], table)
     digits = []
-    for noted in table[places.PLACES]:
+    for noted in table[places.NOTES]:
         assert noted < places.TOO_MANY
         digits.append([])
         while noted >= 1.0:
@@ -40,7 +40,7 @@ def test_each_dip_is_noted(seed):
     """Neighbours of the other sign lie beyond zero, and below it."""
     rows = smooth_samples(seed)
     for column, noted in zip(rows.T, listed(places.note_dips, rows), strict=True):
-        for j in range(BEYOND, COUNT - BEYOND):
+        for j in range(SPARE, COUNT - SPARE):
             before, here, after = column[j - 1 : j + 2] * (1.0 if column[j] > 0.0 else -1.0)
             if here <= before and here < after:
                 assert j in noted
@@ -57,7 +57,7 @@ def test_each_change_of_sign_is_noted(seed):
 
 
 def test_a_digit_holds_every_place_of_a_piece():
-    assert 2 * (max(HALF, HALF_OF_TURN) + BEYOND) + 1 < places.BASE
+    assert 2 * (max(HALF, HALF_OF_TURN) + SPARE) + 1 < places.BASE
 
 
 def test_more_places_than_a_number_holds_are_all_looked_at():
@@ -65,6 +65,6 @@ def test_more_places_than_a_number_holds_are_all_looked_at():
     table = np.zeros((1, 1))
     places.note_crossings(rows.ravel(), COUNT, 1, table)
     assert table[0, 0] >= places.TOO_MANY
-    looked_at = [places.next_place(table[0, 0], step)[0] for step in range(COUNT - 2 * BEYOND)]
-    assert looked_at == list(range(BEYOND, COUNT - BEYOND))
+    looked_at = [places.next_place(table[0, 0], step)[0] for step in range(COUNT - 2 * SPARE)]
+    assert looked_at == list(range(SPARE, COUNT - SPARE))
     assert places.next_place(table[0, 0], 3)[1] == table[0, 0]

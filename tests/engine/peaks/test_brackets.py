@@ -13,7 +13,7 @@ TRIALS = list(itertools.product((-2.0, -0.5, 0.0, 0.3, 2.0), (0.5, 1.0, 1.5, np.
 
 
 def one(points: tuple[float, ...]) -> np.ndarray:
-    table = np.zeros((b.BRACKET_ROWS, b.BLOCK))
+    table = np.zeros((b.BRACKET_ROWS, b.in_blocks(1)))
     table[list(b.POINTS), 0], table[b.WIDTH, 0], table[b.FIRST_WIDTH, 0] = points, 4.0 * (points[4] - points[0]), 2.0
     return table
 
@@ -108,7 +108,7 @@ def test_a_peak_beside_a_break_without_a_jump_is_found_on_either_side(side):
     values = 1.0 - (x + side * 0.3) ** 2
     values[0, x[0] == 0.0] = values[0, 1:3].max() * (1.0 + 1e-15)
     before, after = np.append(x[:, :1] - 1e-9, x[:, :-1], axis=1), np.append(x[:, 1:], x[:, -1:] + 1e-9, axis=1)
-    table, best = np.zeros((b.BRACKET_ROWS, b.BLOCK)), np.empty((b.BEST_ROWS, 1))
+    table, best = np.zeros((b.BRACKET_ROWS, b.in_blocks(1))), np.empty((b.BEST_ROWS, 1))
     count = paths.open_brackets(values[None], x, before, after, False, table, best)
     paths.refine(x.size, table, count, best, lambda tag, at: 1.0 - (at + side * 0.3) ** 2)
     assert best[b.PEAK, 0] == pytest.approx(1.0, rel=1e-11)

@@ -39,7 +39,7 @@ def test_lanes_have_the_same_bits_compiled_and_interpreted(name):
     function, columns = LANEWISE[name], 240
     compiled, interpreted = table(3), table(3)
     samples = np.random.default_rng(4).normal(size=SAMPLES * columns), SAMPLES, columns
-    for lanes, numbers in ((function.compiled(), compiled), (function, interpreted)):
+    for lanes, numbers in ((function.compiled, compiled), (function, interpreted)):
         with np.errstate(all="ignore"):
             lanes(*samples, numbers) if isinstance(function, Around) else lanes(numbers, columns)
     np.testing.assert_array_equal(compiled, interpreted)
@@ -48,7 +48,7 @@ def test_lanes_have_the_same_bits_compiled_and_interpreted(name):
 
 def test_a_constant_is_stored_in_all_lanes():
     table = np.ones((2, 16))
-    Lanewise(lambda x: (2.5, x < 0.0), (0,), (0, 1)).compiled()(table, 16)
+    Lanewise(lambda x: (2.5, x < 0.0), (0,), (0, 1)).compiled(table, 16)
     np.testing.assert_array_equal(table, np.repeat([[2.5], [0.0]], 16, axis=1))
 
 
