@@ -24,7 +24,6 @@ from linksweep.results.peak_search.paths import (
     approach_samples,
     beside_breaks,
     both_sides,
-    distinct,
     jump_angles,
     kinks,
     near_toggle_samples,
@@ -40,8 +39,6 @@ PER_ARC = 192
 """Even samples of an arc, in x."""
 NEAREST = 1e-5
 """Distance in x from the end of an arc within which rounding errors exceed any rise left to find."""
-DISTINCT = 1e-14
-"""Least distance in x of two samples that are not one but for rounding: a third close by would hide a rise."""
 NEIGHBOURS = np.array([-1.0, 0.0, 1.0])
 """Periods of the motion away from the nearest one in which an arc may still reach into a piece."""
 LONGEST_PIECE = 180.0
@@ -165,7 +162,7 @@ def _samples_and_cuts(group: Group, middle: Array, half: Array, at_jumps: Array,
     # no cuts near the ends: a quantity that has a mean is smooth there, and rounding spoils samples nearer to them
     shared = np.broadcast_to(np.concatenate([[-QUARTER], even[4::8], [QUARTER]]), (len(middle), len(even) // 8 + 2))
     cuts = [shared, graded[:, ::2], jumps, close[:, ::7], thinned(quick)]
-    return distinct(in_order(np.concatenate(samples, axis=1)), DISTINCT), in_order(np.concatenate(cuts, axis=1))
+    return in_order(np.concatenate(samples, axis=1)), in_order(np.concatenate(cuts, axis=1))
 
 
 def _quick_and_even(group: Group) -> Array:
