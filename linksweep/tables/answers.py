@@ -98,11 +98,12 @@ def _parts(ds: xr.Dataset) -> Iterator[Part]:
     name = command[1] if command else ""
     if name in ("peaks", "study") and "status" in ds and any(f"{each}_at" in ds for each in ds.data_vars):
         return _peaks(ds)
-    if name == "check" and {"assembly", "arc_start"} <= ds.keys() and _has_arcs(ds):
+    if name == "check" and {"assembly", "arc_start"} <= ds.keys() and _is_whole(ds):
         return iter([check_table(ds)])
     kind = KINDS.get(name)
     return kind.parts(ds) if kind and kind.takes(ds) else parts_of_any(ds)
 
 
-def _has_arcs(check: xr.Dataset) -> bool:
-    return check.arc_start.size > 0 and {dim for name, dim in CHECKED.items() if name in check} <= {*check.dims}
+def _is_whole(check: xr.Dataset) -> bool:
+    """Return whether a check has all dims of its table, not one arc, toggle or jam alone."""
+    return {dim for name, dim in CHECKED.items() if name in check} <= {*check.dims}

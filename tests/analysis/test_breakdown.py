@@ -242,7 +242,7 @@ def test_a_mass_on_the_crank_by_hand():
         (SCENES[2], "F32", 10.0, "mechanism.friction: its force does not grow"),
         (SCENES[3], "F32", 10.0, r"loads\[2\] is a damper"),
         (SMOOTH[0], "F23z", 10.0, 'did you mean "F23'),
-        (SMOOTH[0], "F32", xr.DataArray([9.0, 10.0], dims="w"), "below has dims: must be one number"),
+        (SMOOTH[0], "F32", xr.DataArray([9.0, 10.0], dims="w"), "below: has 1 dims: give one number for all designs"),
         (SMOOTH[0], "F32", -1.0, "below = -1 N: must be greater than 0"),
         (replace(SMOOTH[0], mechanism=replace(FOUR_BAR, branch="both")), "F32", 1.0, 'branch = "both"'),
         (ls.example("loop"), "F32", 1.0, "has no crank"),
