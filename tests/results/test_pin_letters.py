@@ -54,7 +54,6 @@ CALLS = {
     "plot.over_speed": lambda name, path: ls.plot.over_speed(PRESS, name, speeds=[10.0, 20.0]),
     "plot.hodograph": lambda name, path: CYCLE.linksweep.hodograph(name),
     "plot.orders": lambda name, path: ls.orders(CYCLE, "F32", n=3).linksweep.orders(name),
-    "plot.mechanism": lambda name, path: ls.plot.mechanism(PRESS, 45.0, forces=[name]),
     "plot.tornado": lambda name, path: ls.tolerance(PRESS, MADE, of="F32_peak", n=0).linksweep.tornado(f"{name}_peak"),
 }  # fmt: skip
 NO_PINS = {
@@ -64,7 +63,7 @@ NO_PINS = {
     "plot.torque": "of efforts of the drive",
 }
 """Functions that name quantities among which there is no pin's load."""
-NAMES = {"of", "minimize", "maximize", "subject_to", "color", "contours", "forces", "outputs"}
+NAMES = {"of", "minimize", "maximize", "subject_to", "color", "contours", "outputs"}
 """Parameters that name quantities."""
 
 
