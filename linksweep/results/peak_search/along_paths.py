@@ -160,15 +160,19 @@ def raise_to_poles(
             field.values.reshape(-1)[at] = values
 
 
-def raise_to_limits(group: Any, peaks: dict[str, SignalPeak], places: Singular, part: Part | None = None) -> None:
+def raise_to_limits(
+    group: Any, peaks: dict[str, SignalPeak], places: Singular, clear: Array, part: Part | None = None
+) -> None:
     """Raise finite peaks beside singular places to the limits of their signals there, or their bounds, where these are
-    not known as well: samples closer by may consist of rounding errors. `part`: as of `raise_to_poles`."""
-    places = some_of(places, _inside(places.angle, part, group.scene.period))
+    not known as well: samples closer by than `clear` (signal, place) [degree] may consist of rounding errors. `part`:
+    as of `raise_to_poles`."""
+    inside = _inside(places.angle, part, group.scene.period)
+    places, reach = some_of(places, inside), 2.0 * np.tile(np.maximum(clear[:, inside], CLEAR), 2)
     signals, side = tuple(peaks), np.repeat([-1.0, 1.0], len(places.row))
     row, angle = np.tile(places.row, 2), np.tile(places.angle, 2)
     known = zip(*(numbers_of(peak, group)[:2] for peak in peaks.values()), strict=True)
     value, at = (np.stack(numbers)[:, row] for numbers in known)
-    needs = np.isfinite(value) & (np.abs(signed_distance(at, angle, group.scene.period)) < 2.0 * CLEAR)
+    needs = np.isfinite(value) & (np.abs(signed_distance(at, angle, group.scene.period)) < reach)
 
     def values_at(which: Array, ends: Array, x: Array) -> Array:
         angles, rows = angle[ends, None] + side[ends, None] * x, np.repeat(row[ends], x.shape[1])

@@ -56,6 +56,7 @@ def test_a_peak_at_once_after_the_start_of_a_piece_is_found():
         ("Watt six-bar by its output", 7_000_065, 0, 4822),  # a trial on the higher top fell beyond a lower trial
         ("Watt six-bar by its output", 20, 1, 2596),  # beside a dead centre, at which rounding errors hid the slope
         ("six-bar of any lengths by its output", 20, 1, 3584),  # a limit at a toggle, tenfold within 0.01°
+        ("six-bar of any lengths by its output", 7_000_017, 0, 6403),  # a limit where samples are rough up to 0.02°
         ("six-bar of any lengths by its output", 20, 1, 8383),  # a rise ten-thousandfold within 0.01° of a toggle
         ("knuckle-joint press by its upper link", 20, 0, 5989),  # beside the lower side of a jump
         ("knuckle-joint press by its upper link", 20, 1, 287),  # as the one before it

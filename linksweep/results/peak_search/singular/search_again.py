@@ -48,7 +48,7 @@ def clear_of_rounding_errors(group: Group, peaks: dict[str, SignalPeak], part: P
             _search_clear_of(*places.of_designs(designs, clear[k]), own, peak, part)
     if clear.any():
         raise_to_poles(group, peaks, part)
-    raise_to_limits(group, peaks, places, part)
+    raise_to_limits(group, peaks, places, clear, part)
     for k in np.flatnonzero(clear.any(axis=1)):
         designs, peak = np.unique(places.row[clear[k] > 0.0]), {signals[k]: peaks[signals[k]]}
         raise_to_poles(group, peak, part, places.as_poles(clear[k]))
