@@ -32,8 +32,9 @@ def mean_over_time(
 
 
 def weights_of(angles: Array) -> Array:
-    """Return the weights of samples at angles [degree]: 1 where they divide whole turns evenly, else their reach."""
-    even = len(angles) < 2 or whole_turns(np.sort(angles), TURN) is not None
+    """Return the weights of samples at angles [degree]: 1 where they divide whole turns evenly, or are one angle; else
+    their reach."""
+    even = np.ptp(angles) == 0.0 or whole_turns(np.sort(angles), TURN) is not None
     return np.ones(len(angles)) if even else reach(angles)
 
 

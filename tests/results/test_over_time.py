@@ -202,6 +202,13 @@ def test_even_samples_of_a_whole_turn_count_alike():
         assert float(count.T12_rms) == float(angles.T12_rms)
 
 
+def test_the_mean_at_one_angle_is_the_value_there_however_often_it_is_asked_for():
+    motor = ls.Motor(speeds=[0.0, 100.0], torques=[50.0, 50.0])
+    for angles in ([30.0], [30.0, 30.0], [30.0, 390.0]):
+        load = ls.motor_load(PRESS, motor, theta2=angles)
+        assert float(load.motor_torque_rms) == pytest.approx(abs(float(load.motor_torque[0])), rel=1e-12)
+
+
 def test_sizes_before_and_after_are_over_time():
     result = ls.compare(pressing(), pressing(), of=["F32_rms", "T12_ripple"], theta2=360)
     squared = over_time(lambda angle: pressed(angle) ** 2)

@@ -11,6 +11,11 @@ from typing import Any
 from linksweep.base.fields import ANYTHING, FieldKind, declared
 from linksweep.base.validate import did_you_mean, quote
 
+IN_ORDER = {Parameter.POSITIONAL_ONLY, Parameter.POSITIONAL_OR_KEYWORD}
+"""Kinds of parameters whose values need no name."""
+OF_MANY = {Parameter.VAR_POSITIONAL, Parameter.VAR_KEYWORD}
+"""Kinds of parameters that take any number of values, also none."""
+
 
 def naming_parameters(function: Callable[..., Any], called: Any, unnamed: int = 0) -> Callable[..., Any]:
     """Return a function that names the parameters of what its user called where the call does not fit them.
@@ -67,9 +72,3 @@ def _is_declared(name: str, kinds: Mapping[str, FieldKind]) -> bool:
 def _parameters(called: Any) -> dict[str, Parameter]:
     """Return the parameters that a user states: of a method, all but the object."""
     return {name: each for name, each in signature(called).parameters.items() if name != "self"}
-
-
-IN_ORDER = {Parameter.POSITIONAL_ONLY, Parameter.POSITIONAL_OR_KEYWORD}
-"""Kinds of parameters whose values need no name."""
-OF_MANY = {Parameter.VAR_POSITIONAL, Parameter.VAR_KEYWORD}
-"""Kinds of parameters that take any number of values, also none."""

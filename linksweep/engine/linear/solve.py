@@ -25,7 +25,7 @@ KINDS = (BLOCKS, "i8[:, :]", ROW, INTEGERS, BLOCKS, BLOCKS, BLOCKS)
 SAMPLES_PER_THREAD = 10_000
 """Samples that pay for another thread: about a millisecond."""
 PATIENCE = defaultdict[str, Patience](Patience)
-"""What each function of `elimination` has interpreted, by its name."""
+"""Count, for each function of `elimination` by its name, of what was interpreted: beyond some it is compiled."""
 
 
 class Structure(NamedTuple):
