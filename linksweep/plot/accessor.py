@@ -13,7 +13,7 @@ from inspect import Parameter, cleandoc, signature
 from typing import TYPE_CHECKING, Any
 
 from linksweep import plot
-from linksweep.base.public.clear_calls import naming_parameters
+from linksweep.base.public.clear_calls import clear_method
 from linksweep.files import spreadsheet, table
 from linksweep.files.netcdf import scene_of
 from linksweep.scene.scene import Scene
@@ -77,6 +77,7 @@ class Cycle:
         """
         return scene_of(self._ds)
 
+    @clear_method
     def to_pandas(self) -> pd.DataFrame:
         """Return the Dataset as a table whose columns have their units in their names, always of SI.
 
@@ -87,6 +88,7 @@ class Cycle:
         """
         return table.to_pandas(self._ds)
 
+    @clear_method
     def to_csv(self, path: str | os.PathLike[str]) -> None:
         """Write the table as a CSV file, whole or not at all, in the units in which results are shown.
 
@@ -97,6 +99,7 @@ class Cycle:
         """
         table.to_csv(self._ds, path)
 
+    @clear_method
     def to_excel(self, path: str | os.PathLike[str]) -> None:
         """Write the table as an Excel file, in the units in which results are shown, with the meaning of each column.
 
@@ -120,7 +123,7 @@ def _method(draw: Callable[..., Any]) -> Callable[..., Any]:
     text = cleandoc(draw.__doc__ or "").partition("\n\nExamples\n")[0] + "\n"
     method.__signature__ = plain.replace(parameters=[itself, *[*plain.parameters.values()][1:]])  # type: ignore[attr-defined]
     method.__doc__ = NO_PARAMETERS.sub("", FIRST_PARAMETER.sub("", text))
-    return naming_parameters(method, called=method, unnamed=1)
+    return clear_method(method)
 
 
 for _draw in (getattr(plot, name) for name in plot.__all__):

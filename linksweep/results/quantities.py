@@ -7,6 +7,7 @@ from dataclasses import astuple, dataclass, fields
 from html import escape
 from typing import TYPE_CHECKING, overload
 
+from linksweep.base.public.clear_calls import clear_method
 from linksweep.base.text_table import aligned
 from linksweep.base.validate import name_problems, one_text_problems, refuse
 from linksweep.engine.trace.plan import plan
@@ -103,6 +104,7 @@ class QuantityTable(Sequence[AvailableQuantity]):
     def __contains__(self, key: object) -> bool:
         return key in self.names or key in self.rows
 
+    @clear_method
     def search(self, words: str) -> QuantityTable:
         """Return the quantities that have all these words in their name, unit or meaning.
 
@@ -120,6 +122,7 @@ class QuantityTable(Sequence[AvailableQuantity]):
         parts = words.casefold().split()
         return QuantityTable(tuple(row for row in self.rows if all(part in str(row).casefold() for part in parts)))
 
+    @clear_method
     def to_pandas(self) -> pd.DataFrame:
         """Return the table as a DataFrame.
 

@@ -25,6 +25,7 @@ from linksweep.base.fields import (
     parameter,
 )
 from linksweep.base.frozen import bare, cached_copy, cached_property, field_values, normalise, with_sound
+from linksweep.base.public.clear_calls import clear_method
 from linksweep.base.validate import UNITS, Number, Rule, choice_problems, quote, refuse
 from linksweep.engine.quantity import Table
 from linksweep.engine.run import Grid
@@ -371,6 +372,7 @@ class Scene(ByContent):
         """
         return tuple(pair for k, load in enumerate(self.loads, 1) for pair in load.approaches(f"load{k}"))
 
+    @clear_method
     def to_toml(self) -> str:
         """Write the text of a scene file, from which `linksweep.load_scene` makes an equal scene.
 

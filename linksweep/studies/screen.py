@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from linksweep.base.public.clear_calls import passing_options_to
 from linksweep.base.validate import count_problems, refuse
 from linksweep.engine.threads import limits_threads, threads_of_a_task
 from linksweep.files.atomic import ending_of, target_of
@@ -26,6 +27,7 @@ from linksweep.files.progress import progress_bar
 from linksweep.files.seal import SAVED, sealed
 from linksweep.results.compute import requested
 from linksweep.results.front import objective_attributes
+from linksweep.results.peaks import peaks
 from linksweep.studies.cluster import AHEAD, client_of
 from linksweep.studies.screen_progress import Progress, other_screening
 from linksweep.studies.screen_request import ready, screening_of
@@ -37,6 +39,7 @@ INTERVAL = 1.0
 """Seconds, at least, between two writings of the file of an unfinished screening."""
 
 
+@passing_options_to(peaks)
 @limits_threads
 def screen(
     scene: Any,

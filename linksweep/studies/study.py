@@ -23,6 +23,7 @@ from typing import Any
 
 import xarray as xr
 
+from linksweep.base.public.clear_calls import passing_options_to
 from linksweep.base.validate import count_problems, refuse
 from linksweep.engine.threads import limits_threads
 from linksweep.files.atomic import ending_of, sync_folder, target_of
@@ -30,6 +31,7 @@ from linksweep.files.progress import progress_bar
 from linksweep.files.seal import seal, sealed
 from linksweep.results.compute import requested, require_scene
 from linksweep.results.peak_search.pieces import known_on_pieces
+from linksweep.results.peaks import peaks
 from linksweep.scene.designs.lazy import in_memory
 from linksweep.scene.designs.selection import Block
 from linksweep.scene.parameters import replaced
@@ -55,6 +57,7 @@ ADVICE = (
 )
 
 
+@passing_options_to(peaks)
 @limits_threads
 def study(
     scene: Any,

@@ -40,6 +40,19 @@ CALLS = {
     "3 values without a name: forces takes at most 1, of; the others have names, ax": (
         lambda: ls.sweep(ls.example("press"), 12).linksweep.forces(1, 2, 3)
     ),
+    'thetta2 = 1: objective has no such parameter; did you mean "theta2"?': lambda: ls.objective(None, {}, thetta2=1),
+    "minimise = 'F32_peak': screen has no such parameter; did you mean \"minimize\"?": (
+        lambda: ls.screen(None, {}, n=1, minimise="F32_peak")
+    ),
+    "off = 'F32': study has no such parameter; did you mean \"of\"?": lambda: ls.study(None, "a.nc", off="F32"),
+    "path: missing; to_csv needs path": lambda: ls.sweep(ls.example("press"), 12).linksweep.to_csv(),
+    "words: missing; search needs words": lambda: ls.quantities(ls.example("press")).search(),
+    "path = 'a.toml': to_toml has no such parameter; it has none": lambda: ls.example("press").to_toml(path="a.toml"),
+    "1 value without a name: to_toml takes none": lambda: ls.example("press").to_toml("a.toml"),
+    "stars = 1: optimum has no such parameter; it has method, multistart, minimax": lambda: ls.objective(
+        ls.example("press"), {"coupler.length": (0.2, 0.24)}, minimize="F32_peak"
+    ).optimum(stars=1),
+    "constant: missing; from_winding needs voltage, resistance, constant": lambda: ls.DCMotor.from_winding(24, 1),
 }
 
 

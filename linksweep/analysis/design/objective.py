@@ -21,6 +21,7 @@ from linksweep.analysis.design.constraints import (
 from linksweep.analysis.design.result_derivatives import result_names
 from linksweep.analysis.design.searches import local_optimum
 from linksweep.analysis.pins.bearing import Bearing
+from linksweep.base.public.clear_calls import clear_method, passing_options_to
 from linksweep.base.units import quantity
 from linksweep.base.validate import name_problems, quote, refuse
 from linksweep.results.compute import by_name, requested, require_scene
@@ -108,6 +109,7 @@ class Objective:
         """Paths of the parameters, in the order of x."""
         return list(self.ranges)
 
+    @clear_method
     def scene(self, x: Any) -> Scene:
         """Return the scene with these parameters.
 
@@ -123,6 +125,7 @@ class Objective:
         """
         return self.function.scene(self._numbers(x))
 
+    @clear_method
     def peaks(self, x: Any) -> xr.Dataset:
         """Compute the peaks on which the objective depends.
 
@@ -172,6 +175,7 @@ class Objective:
         self._require_gradients()
         return self.sign * self.function.value(self.target, self._numbers(x), "max" if self.sign > 0.0 else "min")
 
+    @clear_method
     def gradient(self, x: Any) -> np.ndarray:
         """Return the exact derivatives of the objective to the parameters.
 
@@ -193,6 +197,7 @@ class Objective:
         self._require_gradients()
         return self.sign * self.function.gradient(self.target, self._numbers(x), "max" if self.sign > 0.0 else "min")
 
+    @clear_method
     def optimum(self, *, method: str = "SLSQP", multistart: Any = None, minimax: int = 0) -> Any:
         """Search a local optimum under the constraints, with exact gradients, from one start or several.
 
@@ -254,6 +259,7 @@ def _alone(value: Any) -> xr.DataArray:
     return xr.DataArray(value).reset_coords(drop=True)
 
 
+@passing_options_to(peaks)
 def objective(
     scene: Scene,
     parameters: Mapping[str, tuple[Any, Any]],

@@ -20,6 +20,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from PIL import Image
 
+from linksweep.base.public.clear_calls import clear_method
 from linksweep.files.atomic import ending_of, whole
 from linksweep.files.progress import progress_bar
 from linksweep.plot.kit.colors import BLACK, BLUE, GREEN, GREY, LOAD, ORANGE, PURPLE, SHADE, SKY, VERMILION
@@ -81,6 +82,7 @@ class Film:
     def __len__(self) -> int:
         return self._count
 
+    @clear_method
     def show(self, k: int) -> list[Artist]:
         """Draw a frame into the figure.
 
@@ -100,6 +102,7 @@ class Film:
             artist.set_visible(True)
         return sorted(moving, key=Artist.get_zorder)
 
+    @clear_method
     def image(self, k: int) -> Image.Image:
         """Return a frame as a picture, in full colour.
 
@@ -120,6 +123,7 @@ class Film:
                 self.figure.draw_artist(artist)
         return Image.fromarray(np.array(self._canvas.buffer_rgba())[..., :3])
 
+    @clear_method
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the film, whole or not at all: a .gif that runs for ever, or a page .html with a slider.
 

@@ -18,6 +18,7 @@ from linksweep.base.conversion import to_float64
 from linksweep.base.degrees import cos_sin
 from linksweep.base.equality import ByContent
 from linksweep.base.frozen import normalise
+from linksweep.base.public.clear_calls import clear_method
 from linksweep.base.validate import Rule, is_array, name_problems, number_problems, quote, refuse
 from linksweep.chains.between_links import force_name
 from linksweep.engine.quantity import Quantity
@@ -180,6 +181,7 @@ class MultiCylinder(ByContent):
         }
         return tuple(turned[bank] for bank in banks)
 
+    @clear_method
     @limits_threads
     def sweep(
         self,

@@ -8,6 +8,7 @@ from typing import Any
 from linksweep.analysis.drive.motors.motor import AnyMotor
 from linksweep.base.checked_number import checked_number
 from linksweep.base.fields import parameter
+from linksweep.base.public.clear_calls import clear_method
 from linksweep.base.validate import Number, Rule, refuse
 from linksweep.physics import motor as physics
 from linksweep.scene.dimensions import argument_problems
@@ -47,6 +48,7 @@ class DCMotor(AnyMotor):
     inertia: Number = parameter("inertia", 0.0, at_least=0.0)
 
     @classmethod
+    @clear_method
     def from_winding(cls, voltage: Number, resistance: Number, constant: Number, *, inertia: Number = 0.0) -> DCMotor:
         """Make a motor by the voltage on it, and the resistance and constant of its winding.
 
