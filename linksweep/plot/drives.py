@@ -15,7 +15,7 @@ from linksweep.files.netcdf import scene_of
 from linksweep.plot.kit import signals
 from linksweep.plot.kit.colors import BLUE, GREY, ORANGE, SHADE, SKY, VERMILION
 from linksweep.plot.kit.style import axes_or_new, crank_angles, grid, legend_above, panels
-from linksweep.results.compute import require_dataset
+from linksweep.results.compute import require_results
 from linksweep.results.origin.in_shown_units import results_in_shown_units, units_of
 from linksweep.results.sweep import sweep
 from linksweep.scene.shown_units import UnitSystem
@@ -70,7 +70,7 @@ def flywheel(ds: xr.Dataset, *, ax: Axes | None = None) -> Axes:
     >>> ls.plot.flywheel(ls.flywheel(ls.example("press"), fluctuation=0.05)).get_ylabel()
     'crank speed $\\\\omega_2$ [rad/s]'
     """
-    require_dataset(ds, "ls.flywheel")
+    require_results(ds, "ls.flywheel")
     known = {"speed", "speed_max"} <= ds.keys()
     refuse([] if known else ["ds has no speed with its extremes: take what ls.flywheel returns"])
     signals.require_angles(ds)
@@ -119,7 +119,7 @@ def torque_with_flywheel(ds: xr.Dataset) -> Figure:
     >>> [ax.get_ylabel() for ax in figure.axes]
     ['torque on the crank [N m]', 'crank speed $\\\\omega_2$ [rad/s]']
     """
-    require_dataset(ds, "ls.flywheel")
+    require_results(ds, "ls.flywheel")
     alone = "ds holds no scene of one machine, as of an engine of several cylinders: draw its speed with plot.flywheel"
     refuse([] if "scene" in ds.attrs else [alone])
     with panels(2, 1, figsize=(7.1, 5.4)) as (figure, (above, below)):
@@ -185,7 +185,7 @@ def steady_cycle(ds: xr.Dataset) -> Figure:
     >>> [ax.get_ylabel() for ax in ls.plot.steady_cycle(cycle).axes]
     ['crank speed $|\\\\omega_2|$ [rad/s]', 'motor torque [N m]', 'motor power [W]']
     """
-    require_dataset(ds, "ls.steady_cycle")
+    require_results(ds, "ls.steady_cycle")
     known = {"omega2", "motor_torque_max", "motor_power_max", "speed_max"} <= ds.keys()
     refuse([] if known else ["ds has no cycle on a motor: take what ls.steady_cycle returns"])
     signals.require_angles(ds)
@@ -267,7 +267,7 @@ def motor_load(ds: xr.Dataset, motor: AnyMotor, *, ax: Axes | None = None) -> Ax
     >>> ls.plot.motor_load(load, servo).get_xlabel()
     'motor speed [rad/s]'
     """
-    require_dataset(ds, "ls.motor_load")
+    require_results(ds, "ls.motor_load")
     known = {"motor_torque", "torque_margin_min"} <= ds.keys()
     refuse(motor_problems(motor))
     refuse([] if known else ["ds has no motor_torque with its least margin: take what ls.motor_load returns"])
@@ -335,7 +335,7 @@ def run_up(ds: xr.Dataset, *, ax: Axes | None = None) -> Axes:
     >>> ls.plot.run_up(ls.run_up(ls.example("press"), motor, ratio=5.0, until=0.5)).get_xlabel()
     'time [s]'
     """
-    require_dataset(ds, "ls.run_up")
+    require_results(ds, "ls.run_up")
     refuse([] if {"time", "speed", "acceleration"} <= ds.keys() else ["ds has no run: take what ls.run_up returns"])
     others = [dim for dim in ds["time"].dims if dim != "step"]
     refuse([f"ds has several designs, over {', '.join(map(str, others))}: choose one with isel"] if others else [])

@@ -11,12 +11,12 @@ import xarray as xr
 from linksweep.analysis.pins.speed_limit import LIMITS, speed_limit
 from linksweep.base.checked_number import one_number
 from linksweep.base.conversion import all_to_float64
-from linksweep.base.validate import name_problems, refuse
+from linksweep.base.validate import name_problems, quote, refuse
 from linksweep.plot.curves import shade_gaps
 from linksweep.plot.kit import signals
 from linksweep.plot.kit.colors import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION
 from linksweep.plot.kit.style import axes_or_new, crank_angles, grid
-from linksweep.results.compute import requested_one, require, require_dataset
+from linksweep.results.compute import requested_one, require, require_results
 from linksweep.results.origin.in_shown_units import results_in_shown_units
 from linksweep.results.peaks import peaks
 from linksweep.scene.scene import Scene
@@ -59,7 +59,7 @@ def breakdown(ds: xr.Dataset, of: str | None = None, *, ax: Axes | None = None) 
     >>> ls.plot.breakdown(ls.breakdown(ls.example("press"), "F32")).get_ylabel()
     'share in $F_{32}$ [N]'
     """
-    require_dataset(ds, "ls.breakdown")
+    require_results(ds, "ls.breakdown")
     known = [str(key) for key, item in ds.data_vars.items() if "source" in item.dims]
     refuse([] if known else ["ds has no sources: take what ls.breakdown returns"])
     of = known[0] if of is None else signals.force_named(ds, of)
@@ -124,7 +124,7 @@ def over_speed(scene: Scene, of: str, *, speeds: Any, below: float | None = None
     Raises
     ------
     ValueError
-        As `linksweep.peaks` and `linksweep.speed_limit` do.
+        For speeds that are no list of numbers; otherwise as `linksweep.peaks` and `linksweep.speed_limit` do.
 
     Examples
     --------
@@ -133,7 +133,7 @@ def over_speed(scene: Scene, of: str, *, speeds: Any, below: float | None = None
     'crank speed $\\\\omega_2$ [rad/s]'
     """
     require(scene, "drives")
-    values = np.asarray(all_to_float64("speeds", speeds, "angular_velocity"), dtype=float)
+    values = _of_crank(speeds)
     omega2 = xr.DataArray(values, dims="omega2")
     of = requested_one("of", of, scene)
     at_rest = replace(scene, omega2=0.0)
@@ -162,6 +162,18 @@ def over_speed(scene: Scene, of: str, *, speeds: Any, below: float | None = None
     )
     ax.legend(fontsize="small", frameon=False, loc="upper left")
     return ax
+
+
+def _of_crank(speeds: Any) -> np.ndarray:
+    """Return a list of speeds [rad/s]; ValueError for anything else."""
+    converted = all_to_float64("speeds", speeds, "angular_velocity")
+    try:
+        values = np.asarray(converted, dtype=float)
+    except (TypeError, ValueError):
+        values = np.empty(0)
+    sound = values.ndim == 1 and values.size > 0 and np.isfinite(values).all()
+    refuse([] if sound else [f"speeds = {quote(speeds)}: must be a list of numbers in rad/s, as range(10, 52, 2)"])
+    return values
 
 
 def _mark_limit(ax: Axes, limit: float, below: float, units: str, system: UnitSystem) -> None:

@@ -12,7 +12,7 @@ from linksweep.base.checked_number import one_pair
 from linksweep.base.conversion import to_float64
 from linksweep.base.fields import POLAR_POINT
 from linksweep.base.validate import choice_problems, flag_problems, refuse
-from linksweep.files.netcdf import scene_of
+from linksweep.files.netcdf import scene_given
 from linksweep.mechanisms.drawing import Block, Drawing, Rail
 from linksweep.plot.kit import machine_parts, signals
 from linksweep.plot.kit.colors import BLACK, GREY, LOAD, SKY, force_color
@@ -80,9 +80,8 @@ def mechanism(
     >>> ls.plot.mechanism(ls.example("press"), theta2=30.0, forces=True).get_xlabel()
     'x [m]'
     """
-    if isinstance(scene, Scene):
-        return draw_machine(scene, None, theta2, ax, point, link, forces)
-    return draw_machine(scene_of(scene, whole=False), part_of(scene), theta2, ax, point, link, forces)
+    part = part_of(scene) if isinstance(scene, xr.Dataset) else None
+    return draw_machine(scene_given(scene, whole=False), part, theta2, ax, point, link, forces)
 
 
 def draw_machine(

@@ -14,7 +14,7 @@ from linksweep.plot.kit.colors import BLUE, GREEN, ORANGE, PURPLE, VERMILION
 from linksweep.plot.kit.locus import SIZE, draw_locus
 from linksweep.plot.kit.style import axes_or_new, grid
 from linksweep.plot.kit.with_peaks import with_peaks
-from linksweep.results.compute import requested, require_dataset
+from linksweep.results.compute import requested, require_results
 from linksweep.results.origin.in_shown_units import in_shown_units
 from linksweep.results.origin.machine_of_results import name_in_results
 
@@ -97,7 +97,7 @@ def orders(ds: xr.Dataset, of: Iterable[str] | None = None, *, ax: Axes | None =
     >>> ls.plot.orders(shaking).get_ylabel()
     'amplitude [N]'
     """
-    require_dataset(ds, "ls.orders")
+    require_results(ds, "ls.orders")
     known = [str(key).removesuffix(ENDING) for key in ds.data_vars if str(key).endswith(ENDING)]
     names = known if of is None else [name_in_results(ds, name) for name in requested("of", of)]
     refuse([] if known else ["ds has no amplitudes: take what ls.orders returns"])

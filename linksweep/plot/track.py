@@ -12,7 +12,7 @@ from linksweep.plot.curves import shade_gaps
 from linksweep.plot.kit import signals
 from linksweep.plot.kit.colors import BLACK, BLUE, GREY, VERMILION
 from linksweep.plot.kit.style import grid, panels, show_lengths
-from linksweep.results.compute import angles_missing
+from linksweep.results.compute import angles_missing, require_results
 from linksweep.results.origin.in_shown_units import in_shown_units, results_in_shown_units
 from linksweep.results.origin.machine_of_results import machine_of_results
 from linksweep.results.peaks import peaks
@@ -55,6 +55,7 @@ def loop(ds: xr.Dataset) -> Figure:
     >>> [ax.get_ylabel() for ax in figure.axes]
     ['y [m]', 'force of the track $F_N$ [N]']
     """
+    require_results(ds, "ls.sweep")
     machine = machine_of_results(ds)
     track = machine.track if machine else None
     if machine is None or track is None or machine.index not in ds.dims or track.force not in ds:

@@ -136,6 +136,13 @@ def require_dataset(ds: Any, source: str) -> None:
     refuse([] if isinstance(ds, xr.Dataset) else [f"ds = {quote(ds)}: must be a Dataset, as from {source}"])
 
 
+def require_results(ds: Any, source: str) -> None:
+    """Raise ValueError for anything but a Dataset with results, naming the function that returns one."""
+    require_dataset(ds, source)
+    empty = [str(dim) for dim, size in ds.sizes.items() if size == 0]
+    refuse([f"ds holds nothing over {dim}: select at least one of what {source} returns" for dim in empty])
+
+
 def require(scene: Any, *capabilities: str) -> None:
     """Raise ValueError for anything but a Scene, and for a machine that lacks one of these capabilities."""
     require_scene(scene)

@@ -140,14 +140,16 @@ def _endings(quantity: Quantity) -> tuple[str, ...]:
     return (*SUMMARIES, "peak") if quantity.squared else (*SUMMARIES, *EXTREMES)
 
 
-@cached_beside
-def _requests(scene: Scene, names: tuple[str, ...] | None) -> list[Request]:
+def requests_named(path: str, names: Iterable[str], scene: Scene) -> list[Request]:
+    """Return the requests that names in a parameter state; raise ValueError for names that `peaks` does not know."""
     quantities = scene.table.quantity
     known = [name for name in quantities if name != "cond"]
-    default = scene.mechanism.peak_quantities(scene.drive)
-    return parsed_requests(
-        quantities, default if names is None else names, lambda n: quantity_problems("of", n, known, scene)
-    )
+    return parsed_requests(quantities, names, lambda n: quantity_problems(path, n, known, scene))
+
+
+@cached_beside
+def _requests(scene: Scene, names: tuple[str, ...] | None) -> list[Request]:
+    return requests_named("of", scene.mechanism.peak_quantities(scene.drive) if names is None else names, scene)
 
 
 def _request(quantity: Quantity, summary: str) -> Request:

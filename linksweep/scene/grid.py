@@ -21,6 +21,9 @@ NAMES = ("cos2", "sin2", "cos2_lo", "sin2_lo", "radians2")
 """Rows of a grid's table, but for those of wheels."""
 
 
+TEXTS = '(numbers, or texts such as "90 deg" and "1.5 rad")'
+
+
 def rows(geared: Geared) -> tuple[str, ...]:
     """Return the names of the rows of a grid's table, those of wheels last."""
     return (*NAMES, *(name for role, _ in geared for name in geared_rows(role)))
@@ -61,7 +64,7 @@ def _angles(values: Any, name: str) -> np.ndarray:
     except ValueError:  # rows that differ in length
         angles = np.empty(0)
     if angles.dtype.kind not in "fiu" or angles.ndim > 1 or angles.size == 0:
-        raise ValueError(f"{name} = {quote(values)}: must be a count of angles, or a list of angles in degrees")
+        raise ValueError(f"{name} = {quote(values)}: must be a count of angles, or a list of angles in degrees {TEXTS}")
     if angles.ndim == 0:
         raise ValueError(f"{name} = {quote(values)}: a count is a whole number; for one angle write [{angles}]")
     angles = angles.astype(float)

@@ -129,14 +129,12 @@ class Scene(ByContent):
         normalise(self, **self._normalised())
         refuse(self._problems())
         refuse([problem for path, load in self._loads() for problem in load.misfits(path, self.mechanism)])
+        machine, arrays = self.mechanism, self.arrays
         units = unit_attribute_problems((path, *number) for path, number in self._not_plain.items())
-        refuse(units + interpolation_problems(self.arrays, self.mechanism.index))
-        turn = self.mechanism.period
-        refuse([p for path, function in self.functions.items() for p in turning_problems(path, function, turn)])
+        refuse(units + interpolation_problems(arrays, machine.index))
+        refuse([p for path, curve in self.functions.items() for p in turning_problems(path, curve, machine.period)])
         # omega2 is a result by that name, too; the speed of a loop's results is another than the parameter
-        results = self.table.quantity.keys() - (self.motion.keys() & self.arrays.keys())
-        taken = {*results, *self.mechanism.both_branches}
-        arrays, machine = self.arrays, self.mechanism
+        taken = {*self.table.quantity.keys() - (self.motion.keys() & arrays.keys()), *machine.both_branches}
         refuse(index_problems(arrays, machine) + dimension_problems(arrays, machine.index, taken))
 
     def _defaults(self) -> dict[str, Any]:

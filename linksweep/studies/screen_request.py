@@ -11,6 +11,8 @@ import numpy as np
 from linksweep.base.validate import count_problems, is_quantity, limits_in, name_problems, quote, refuse
 from linksweep.base.version import installed_version
 from linksweep.results.compute import by_name, requested
+from linksweep.results.peaks import quantity_of
+from linksweep.results.scene_peaks import requests_named
 from linksweep.scene.at_sections import link_of
 from linksweep.scene.designs.drawing import draw, seed_range_problems
 from linksweep.scene.designs.lazy import in_memory
@@ -89,6 +91,8 @@ def ready(task: Screening, n: int, further: list[str]) -> tuple[Screening, dict[
     """
     ends = np.tile(EXTREMES, (len(task.parameters), 1))
     with_designs(task.scene, task.parameters, ends, np.arange(2), DIM)
+    for name in task.results:
+        requests_named(_parameter(task, name), [quantity_of(name)], task.scene)
     first = range(min(n, PILOT))
     pilot = task.peaks(first, task.quantities)
     if further:

@@ -51,11 +51,15 @@ class Screening:
         """Names of all results that the screening looks at."""
         return list(dict.fromkeys([*self.objectives, *self.limits, *self.edges]))
 
+    @property
+    def results(self) -> list[str]:
+        """Names of those that are no parameters and not the status: results of `linksweep.peaks`."""
+        return [name for name in self.names if name not in self.parameters and name != "status"]
+
     @cached_property
     def quantities(self) -> list[str]:
         """Names of the quantities whose peaks are computed for all designs."""
-        results = [name for name in self.names if name not in self.parameters and name != "status"]
-        return list(dict.fromkeys(map(quantity_of, results)))
+        return list(dict.fromkeys(map(quantity_of, self.results)))
 
     def peaks(self, designs: Iterable[int], of: list[str]) -> xr.Dataset:
         """Return the peaks of some designs."""

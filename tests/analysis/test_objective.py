@@ -169,7 +169,7 @@ def test_functions_receive_all_pins_and_the_torque_or_the_requested_quantities()
             "constraint = 900.0: must be a function of the Dataset",
         ),
         (MAY_BE, {"minimize": "F32"}, "minimize: nothing is named 'F32'; did you mean \"F32_peak\"?"),
-        (MAY_BE, {"maximize": "F99_peak"}, "of: nothing is named 'F99'"),
+        (MAY_BE, {"maximize": "F99_peak"}, "maximize: nothing is named 'F99'"),
         ({}, {"minimize": "F32_peak"}, "parameters = {}: must name what varies"),
         ({"couple.length": (1, 2)}, {"minimize": "F32_peak"}, "parameters: nothing is named 'couple.length'; did you"),
         ({"coupler.length": (2, 1)}, {"minimize": "F32_peak"}, "coupler.length = (2, 1): low must be less than high"),

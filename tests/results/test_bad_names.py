@@ -10,6 +10,7 @@ from refusals import SCENE, array, refusal
 import linksweep as ls
 
 PRESS = ls.example("press")
+LENGTHS = {"coupler.length": (0.20, 0.24)}
 NAMES = "must be names of quantities"
 
 
@@ -40,6 +41,24 @@ NAMES = "must be names of quantities"
         (lambda: ls.with_counterweights(PRESS, None), "counterweights = None: must be a Counterweight"),
         (lambda: ls.save_drawing(PRESS, "a.svg", curves=3), "curves[1] = 3: must be (link, distance [m], angle"),
         (lambda: ls.quantities(PRESS, ["F32"]), "search = ['F32']: must be words"),
+        (lambda: ls.objective(PRESS, LENGTHS, minimize="F33_peak"), "minimize: nothing is named 'F33'; did you mean"),
+        (lambda: ls.screen(PRESS, LENGTHS, n=9, maximize="F33_peak"), "maximize: nothing is named 'F33'; did you mean"),
+        (lambda: ls.screen(PRESS, LENGTHS, n=9, subject_to={"F33_peak": (1, None)}), "subject_to: nothing is named"),
+        (lambda: ls.objective(PRESS, LENGTHS, minimize=lambda ds: ds), "minimize: its function must return one result"),
+        (
+            lambda: ls.objective(PRESS, LENGTHS, minimize="F32_peak", constraint=lambda ds: ds),
+            "constraint: its function must return one result, such as",
+        ),
+        (
+            lambda: ls.speed_separation(PRESS, "F32"),
+            "of: F32 is a magnitude, which is no sum of these terms; name its components, F32x, F32y",
+        ),
+        (lambda: ls.plot.over_speed(PRESS, "F32", speeds=300), "speeds = 300: must be a list of numbers in rad/s"),
+        (lambda: ls.plot.over_speed(PRESS, "F32", speeds=[np.nan]), "speeds = [nan]: must be a list of numbers"),
+        (lambda: ls.plot.mechanism("press"), "scene is a str: must be a Scene, or a Dataset of linksweep"),
+        (lambda: ls.plot.animate(3), "scene is a int: must be a Scene, or a Dataset of linksweep"),
+        (lambda: ls.save_drawing([], "a.svg"), "scene is a list: must be a Scene, or a Dataset of linksweep"),
+        (lambda: ls.report("press", "a.html"), "scene is a str: must be a Scene, or a Dataset of linksweep"),
     ],
 )
 def test_lists_of_names_that_are_none(request_, message):
@@ -93,3 +112,28 @@ def test_a_truth_value_is_no_label_of_numbers():
     (line,) = refusal(ls.scene_at, numbers, run=True)
     assert line == "run = True: must be one of its 2 labels, of which the first is 0"
     assert ls.scene_at(numbers, run=1).omega2 == ls.scene_at(truths, run=True).omega2 == 20.0
+
+
+CYCLE = ls.sweep(PRESS, 24)
+
+
+@pytest.mark.parametrize(
+    ("use", "ds", "dim", "source"),
+    [
+        (ls.plot.forces, CYCLE, "theta2", "sweep"),
+        (ls.plot.torque, CYCLE, "theta2", "sweep"),
+        (ls.plot.bearings, CYCLE, "theta2", "sweep"),
+        (lambda ds: ls.plot.hodograph(ds, "F32"), CYCLE, "theta2", "sweep"),
+        (lambda ds: ls.orders(ds, "F32x"), CYCLE, "theta2", "sweep"),
+        (ls.plot.orders, ls.orders(CYCLE, "F32x", n=3), "order", "orders"),
+        (ls.plot.flywheel, ls.flywheel(PRESS, fluctuation=0.02, theta2=24), "theta2", "flywheel"),
+        (ls.plot.breakdown, ls.breakdown(PRESS, "F32", theta2=24), "source", "breakdown"),
+        (ls.plot.run_up, ls.run_up(PRESS, MOTOR, until=0.1), "step", "run_up"),
+        (ls.load_spectrum, ls.bearings(PRESS, theta2=24), "pin", "bearings"),
+        (lambda ds: ds.linksweep.loop(), ls.sweep(ls.example("loop"), 24), "theta", "sweep"),
+    ],
+)
+def test_results_of_which_nothing_is_selected_name_the_dim(use, ds, dim, source):
+    assert refusal(use, ds.isel({dim: []})) == [
+        f"ds holds nothing over {dim}: select at least one of what ls.{source} returns"
+    ]

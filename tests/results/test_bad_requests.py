@@ -193,7 +193,8 @@ def test_one_impossible_design_spoils_only_itself():
 
 # ------------------------------------------------------------------------------------------------- requests
 
-ANGLES = ": must be a count of angles, or a list of angles in degrees"
+TEXTS = '(numbers, or texts such as "90 deg" and "1.5 rad")'
+ANGLES = f": must be a count of angles, or a list of angles in degrees {TEXTS}"
 BAD_ANGLES = [
     ("720", f"theta2 = '720'{ANGLES}"),
     (True, f"theta2 = True{ANGLES}"),

@@ -291,7 +291,7 @@ POUNDS = pint.UnitRegistry().Quantity(np.array([60.0, 75.0]), "lbf")
         ({"seed": 2**128}, "seed = "),
         ({"minimize": (), "maximize": (), "subject_to": None}, "minimize: give what is asked for"),
         ({"maximize": "F32_peak"}, "maximize: F32_peak is to be small, too; name it once"),
-        ({"minimize": "F32_pek"}, "of: nothing is named 'F32_pek'"),
+        ({"minimize": "F32_pek"}, "minimize: nothing is named 'F32_pek'"),
         ({"minimize": "F32"}, "minimize: nothing is named 'F32'"),
         ({"subject_to": {"F32": (None, 900.0)}}, "subject_to: nothing is named 'F32'"),
         ({"of": "F3"}, "of: nothing is named 'F3'"),

@@ -16,7 +16,7 @@ import xarray as xr
 from linksweep.base.degrees import cos_sin
 from linksweep.base.validate import count_problems, name_problems, quote, refuse
 from linksweep.mechanisms import indices
-from linksweep.results.compute import requested, require_dataset
+from linksweep.results.compute import requested, require_results
 from linksweep.results.dataset import by_command, with_units
 from linksweep.results.origin.machine_of_results import cycle_of_results, name_in_results
 from linksweep.scene.grid import whole_turns
@@ -62,7 +62,7 @@ def orders(ds: xr.Dataset, of: str | Iterable[str], *, n: int = 12) -> xr.Datase
     >>> parts.Fsy_amplitude.sel(order=[1, 2]).round(-1).values.tolist()
     [4460.0, 820.0]
     """
-    require_dataset(ds, "ls.sweep")
+    require_results(ds, "ls.sweep")
     names = [name_in_results(ds, name) for name in requested("of", of)]
     index = next((dim for dim in indices() if dim in ds.dims), "theta2")
     refuse([] if index in ds.dims else [f"ds has no dimension {index}: take what ls.sweep returns"])

@@ -16,8 +16,9 @@ import xarray as xr
 
 from linksweep.analysis.design.conditions import USUAL, Conditions
 from linksweep.analysis.design.result_derivatives import Derived, derived, result_problems, result_value, whole_name
-from linksweep.base.validate import as_float, limits_in, quote, refuse
-from linksweep.scene.parameters import replaced
+from linksweep.base.units import quantity
+from linksweep.base.validate import as_float, limits_in, name_problems, quote, refuse
+from linksweep.scene.parameters import free, replaced
 from linksweep.scene.scene import Scene
 
 if TYPE_CHECKING:
@@ -69,6 +70,31 @@ class ResultFunction:
         values, *slopes = (array.values.ravel() for array in arrays)
         k = int((np.nanargmax if worst == "max" else np.nanargmin)(values)) if np.isfinite(values).any() else 0
         return np.array([slope[k] for slope in slopes])
+
+
+def checked_ranges(scene: Scene, parameters: Any) -> dict[str, tuple[float, float]]:
+    """Return (low, high) of each parameter in its unit; ValueError for ranges that are none of the scene."""
+    if not isinstance(parameters, Mapping) or not parameters:
+        refuse([f'parameters = {quote(parameters)}: must name what varies, as in {{"coupler.length": (0.1, 0.3)}}'])
+    kinds = {path: kind for path, (_, kind) in free(scene).items()}
+    refuse([problem for path in parameters for problem in name_problems("parameters", path, kinds)])
+    ranges, problems = {}, []
+    for path, ends in parameters.items():
+        try:
+            ranges[path] = _range(ends, kinds[path])
+        except ValueError as error:
+            problems.append(f"{path} = {error}")
+    refuse(problems)
+    return ranges
+
+
+def _range(ends: Any, kind: str) -> tuple[float, float]:
+    if not isinstance(ends, tuple | list) or len(ends) != 2:
+        raise ValueError(f"{quote(ends)}: must be a range (low, high)")
+    low, high = (quantity(end, kind) for end in ends)
+    if not low < high:
+        raise ValueError(f"({low:.15g}, {high:.15g}): low must be less than high")
+    return low, high
 
 
 def checked_bounds(scene: Scene, subject_to: Any, conditions: Conditions = USUAL) -> dict[str, Bounds]:

@@ -16,16 +16,17 @@ from linksweep.analysis.design.constraints import (
     Bounds,
     ResultFunction,
     checked_bounds,
+    checked_ranges,
     nonlinear_constraints,
 )
 from linksweep.analysis.design.result_derivatives import result_names
 from linksweep.analysis.design.searches import local_optimum
 from linksweep.analysis.pins.bearing import Bearing
 from linksweep.base.public.clear_calls import clear_method, passing_options_to
-from linksweep.base.units import quantity
 from linksweep.base.validate import name_problems, quote, refuse
 from linksweep.results.compute import by_name, requested, require_scene
 from linksweep.results.peaks import peaks, quantity_of
+from linksweep.results.scene_peaks import requests_named
 from linksweep.scene.parameters import free
 from linksweep.scene.scene import Scene
 
@@ -331,7 +332,7 @@ def objective(
     True
     """
     require_scene(scene)
-    ranges = _ranges(scene, parameters)
+    ranges = checked_ranges(scene, parameters)
     both = minimize is not None and maximize is not None
     if both or minimize is maximize:
         refuse([f'minimize: give {"either" if both else "it,"} or maximize, as minimize="F32_peak"'])
@@ -343,6 +344,7 @@ def objective(
     refuse([] if known else [f"constraint = {quote(constraint)}: must be {bound}"])
     if isinstance(target, str):
         (target,) = requested(path, target, scene)
+        requests_named(path, [quantity_of(target)], scene)
     names = _names(scene, target, constraint, None if of is None else requested("of", of, scene))
     measure = partial(_measured, target, 1.0 if path == "minimize" else -1.0)
     if isinstance(subject_to, Mapping):
@@ -360,6 +362,10 @@ def _try(ready: Objective, target: Any, path: str) -> None:
     """Evaluate at the ends of all ranges, so that errors appear here and not in the middle of a search."""
     results = ready.peaks(np.array(ready.bounds))
     refuse(name_problems(path, target, map(str, results.data_vars)) if isinstance(target, str) else [])
+    for word, function in ((path, target), ("constraint", ready.constraint)):
+        several = callable(function) and isinstance(function(results), xr.Dataset)
+        one = f"{word}: its function must return one result, such as peaks.F32_peak, not a Dataset"
+        refuse([one] if several else [])
     ready(np.array(ready.bounds))
 
 
@@ -374,27 +380,3 @@ def _names(scene: Scene, target: Any, constraint: Measure | None, of: list[str] 
     if of is None and (constraint is not None or not named):
         of = list(scene.mechanism.peak_quantities(scene.drive))
     return list(dict.fromkeys([*named, *(of or [])]))
-
-
-def _ranges(scene: Scene, parameters: Any) -> dict[str, tuple[float, float]]:
-    if not isinstance(parameters, Mapping) or not parameters:
-        refuse([f'parameters = {quote(parameters)}: must name what varies, as in {{"coupler.length": (0.1, 0.3)}}'])
-    kinds = {path: kind for path, (_, kind) in free(scene).items()}
-    refuse([problem for path in parameters for problem in name_problems("parameters", path, kinds)])
-    ranges, problems = {}, []
-    for path, ends in parameters.items():
-        try:
-            ranges[path] = _range(ends, kinds[path])
-        except ValueError as error:
-            problems.append(f"{path} = {error}")
-    refuse(problems)
-    return ranges
-
-
-def _range(ends: Any, kind: str) -> tuple[float, float]:
-    if not isinstance(ends, tuple | list) or len(ends) != 2:
-        raise ValueError(f"{quote(ends)}: must be a range (low, high)")
-    low, high = (quantity(end, kind) for end in ends)
-    if not low < high:
-        raise ValueError(f"({low:.15g}, {high:.15g}): low must be less than high")
-    return low, high

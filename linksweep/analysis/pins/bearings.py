@@ -15,7 +15,7 @@ from linksweep.base.memory import require_memory
 from linksweep.base.validate import count_problems, quote, refuse
 from linksweep.chains.between_links import force_name
 from linksweep.engine.threads import limits_threads
-from linksweep.results.compute import angles_missing, part_of, require_dataset
+from linksweep.results.compute import angles_missing, part_of, require_results
 from linksweep.results.cylinders.multi_cylinder import MultiCylinder
 from linksweep.results.dataset import by_command, joined, with_units
 from linksweep.results.over_time import reach
@@ -198,7 +198,7 @@ def load_spectrum(ds: xr.Dataset, *, classes: int = 10) -> xr.Dataset:
     >>> spectrum.share.sel(pin="C").round(3).values.tolist()  # of its rotation, under small to large loads
     [0.36, 0.298, 0.168, 0.086, 0.089]
     """
-    require_dataset(ds, "ls.bearings")
+    require_results(ds, "ls.bearings")
     missing = [name for name in ("F", "rotation_share", "life_status") if name not in ds]
     refuse([f"ds has no {', '.join(missing)}: give what ls.bearings returns"] if missing else [])
     shares = ds["rotation_share"].sum({"theta2"} & {*ds.dims})

@@ -80,9 +80,13 @@ def speed_separation(
     """
     require(scene, "drives")
     refuse(_problems(scene))
-    known = [name for name in forces_of(scene) if not scene.table.quantity[name].squared]
+    quantities = scene.table.quantity
+    known = [name for name in forces_of(scene) if not quantities[name].squared]
     unknowns = scene.mechanism.unknowns(scene.drive)
     names = tuple(name for name in known if name in unknowns) if of is None else tuple(requested("of", of, scene))
+    magnitudes = [quantities[name] for name in names if name in quantities and quantities[name].squared]
+    no_sum = "is a magnitude, which is no sum of these terms; name its components"
+    refuse([f"of: {size.name} {no_sum}, {', '.join(size.components)}" for size in magnitudes])
     refuse([problem for name in names for problem in quantity_problems("of", name, known, scene)])
     grid = scene.grid(theta2)
     sampled = scene.at(grid)

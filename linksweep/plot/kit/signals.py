@@ -12,6 +12,7 @@ import xarray as xr
 from linksweep.base.validate import one_text_problems, refuse
 from linksweep.chains.between_links import force_name, pair_of, reaction
 from linksweep.plot.kit.drawings import drawing_of_results, efforts
+from linksweep.results.compute import require_results
 from linksweep.scene.grid import whole_turns
 from linksweep.scene.shown_units import UnitSystem
 from linksweep.tables.cells import number as number
@@ -95,6 +96,7 @@ def unit(signal: xr.DataArray, default: str) -> str:
 
 def require_angles(ds: xr.Dataset) -> None:
     drawing_of_results(ds)  # which refuses mechanisms that there are no plots of
+    require_results(ds, "ls.sweep")
     if INDEX not in ds.dims:
         raise ValueError("the Dataset has no dimension theta2: plots over the revolution take what ls.sweep returns")
 
