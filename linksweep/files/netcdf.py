@@ -191,7 +191,7 @@ def scene_given(scene: Scene | xr.Dataset, whole: bool = True) -> Scene:
     """Return the scene that the parameter `scene` gives, itself or by a Dataset that came from it, as by `scene_of`."""
     if isinstance(scene, Scene):
         return scene
-    wrong = f"scene is a {type(scene).__name__}: must be a Scene, or a Dataset of linksweep"
+    wrong = f"scene is a {type(scene).__name__}: must be a Scene, as from ls.load_scene, or a Dataset of linksweep"
     refuse([] if isinstance(scene, xr.Dataset) else [wrong])
     return scene_of(scene, whole=whole)
 

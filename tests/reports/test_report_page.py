@@ -355,7 +355,9 @@ def test_one_design_of_a_study(undrawn):
 def test_refusals_of_report():
     scene = ls.example("loop")
     assert "its ending must be .html or .htm: a report is a page" in refused(scene, "report.pdf")
-    assert "must be a Dataset of linksweep, or a Scene" in refused("press.toml", "report.html")
+    assert "scene is a str: must be a Scene, as from ls.load_scene, or a Dataset" in refused(
+        "press.toml", "report.html"
+    )
     assert "theta2 = (50, 10): must be a pair (first, last), first less than last" in refused(
         scene, "report.html", theta2=(50.0, 10.0)
     )

@@ -55,10 +55,22 @@ NAMES = "must be names of quantities"
         ),
         (lambda: ls.plot.over_speed(PRESS, "F32", speeds=300), "speeds = 300: must be a list of numbers in rad/s"),
         (lambda: ls.plot.over_speed(PRESS, "F32", speeds=[np.nan]), "speeds = [nan]: must be a list of numbers"),
-        (lambda: ls.plot.mechanism("press"), "scene is a str: must be a Scene, or a Dataset of linksweep"),
-        (lambda: ls.plot.animate(3), "scene is a int: must be a Scene, or a Dataset of linksweep"),
-        (lambda: ls.save_drawing([], "a.svg"), "scene is a list: must be a Scene, or a Dataset of linksweep"),
-        (lambda: ls.report("press", "a.html"), "scene is a str: must be a Scene, or a Dataset of linksweep"),
+        (
+            lambda: ls.plot.mechanism("press"),
+            "scene is a str: must be a Scene, as from ls.load_scene, or a Dataset of linksweep",
+        ),
+        (
+            lambda: ls.plot.animate(3),
+            "scene is a int: must be a Scene, as from ls.load_scene, or a Dataset of linksweep",
+        ),
+        (
+            lambda: ls.save_drawing([], "a.svg"),
+            "scene is a list: must be a Scene, as from ls.load_scene, or a Dataset of linksweep",
+        ),
+        (
+            lambda: ls.report("press", "a.html"),
+            "scene is a str: must be a Scene, as from ls.load_scene, or a Dataset of linksweep",
+        ),
     ],
 )
 def test_lists_of_names_that_are_none(request_, message):
