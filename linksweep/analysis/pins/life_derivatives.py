@@ -67,8 +67,8 @@ def _turn(speed: Array, omega2: Array) -> Array:
 
 
 def _slope_of_turn(speed: Array, omega2: Array, speed_slope: Array, omega2_slope: Array) -> Array:
-    ratio = speed / omega2
-    return np.sign(ratio) * (speed_slope - ratio * omega2_slope) / omega2
+    """Return the slope of |dψ/dθ|: to omega2 it is 0, of which the slopes of the two speeds leave rounding errors."""
+    return np.sign(speed / omega2) * np.where(omega2_slope == 0.0, speed_slope, 0.0) / omega2
 
 
 def _damage(exponent: float, speed: Array, omega2: Array, squared: Array) -> Array:

@@ -60,6 +60,17 @@ def test_the_life_under_a_force_that_changes_over_the_turn():
     assert ds.L10_A_derivative.values == pytest.approx([-3 * life / MASS, -3 * life / A, -6 * life / OMEGA], rel=1e-8)
 
 
+@pytest.mark.parametrize("pin", "ABCD")
+def test_lives_under_inertia_alone_are_powers_of_the_speed(pin):
+    """Forces are as ω², and a pin turns by as much in each cycle: P ~ ω², L10 ~ ω⁻⁶, L10h ~ ω⁻⁷."""
+    scene = replace(ls.example("press"), gravity=(0.0, 0.0), loads=())
+    powers = {"equivalent_load": 2.0, "L10": -6.0, "L10h": -7.0}
+    ds = ls.sensitivities(scene, of=[f"{name}_{pin}" for name in powers], to=["omega2"], pins={pin: BALL})
+    for name, power in powers.items():
+        expected = power * float(ds[f"{name}_{pin}"]) / scene.omega2
+        assert float(ds[f"{name}_{pin}_derivative"].squeeze()) == pytest.approx(expected, rel=1e-9)
+
+
 def test_the_life_of_a_bearing_takes_its_capacity():
     with pytest.raises(ValueError, match=r"of: L10_B takes a bearing with a capacity; give pins="):
         ls.sensitivities(ls.example("press"), of=["L10_B"])
