@@ -26,6 +26,10 @@ NUMBERS = {
 """Words of the help on the numbers of each kind, besides its inertia."""
 
 
+TRAIN = ("ratio", "flywheel", "efficiency")
+"""Options for what is between the motor and the crank."""
+
+
 def add_motor_commands(commands: Commands) -> None:
     """Add these commands to those of the command line."""
     text = "the speed of the crank on its motor, over the cycle that repeats; torque, power and heat of the motor"
@@ -87,6 +91,8 @@ def motor_of(words: list[str]) -> AnyMotor:
     values: dict[str, Any] = {}
     for pair in pairs:
         name, equals, text = pair.partition("=")
+        if name in TRAIN:
+            raise ValueError(f"--motor {kind}: {name} is no number of the motor itself: write it as --{name} {text}")
         if not equals or name not in needed or name in values:
             once = f"must be one of {', '.join(needed)}, each once, as NAME=VALUE"
             raise ValueError(f'--motor {kind}: "{pair}": {once}{did_you_mean(name, needed)}')
@@ -126,7 +132,7 @@ def _run_down(options: argparse.Namespace) -> None:
 
 
 def _train(options: argparse.Namespace) -> dict[str, Any]:
-    return {"ratio": options.ratio, "flywheel": options.flywheel, "efficiency": options.efficiency}
+    return {name: getattr(options, name) for name in TRAIN}
 
 
 def _run(options: argparse.Namespace) -> dict[str, Any]:

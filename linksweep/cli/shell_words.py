@@ -44,6 +44,8 @@ PHRASES = {
     'give it its angles with coords={"theta2": degrees}': "give it its angles in a CSV table",
     "only Datasets made by linksweep": "only results made by linksweep",
     " of the Dataset: see its status": ": see its status",
+    "ds has no finite {} with a derivative: its {} says why": "nothing to draw: the result has no derivatives",
+    "ds has no speed: ": "nothing to draw: ",
     "ls.peaks of several designs": "linksweep peaks of several designs",
 }
 """Phrases of messages that a command can meet, {} for any text in them, and what to say in a shell."""

@@ -64,9 +64,10 @@ STEADY = {  # title by variable, and the variable beside which less than 1e-12 i
 
 def steady_table(cycle: xr.Dataset) -> Table:
     """Return the table of a machine on its motor; of one that does not keep turning, what it does."""
-    words = cycle["status"].attrs["flag_meanings"].split()[int(cycle["status"])]
-    if words != "ok":
-        return Table(("on its motor", "", ""), [("the machine", words.replace("_", " "), "")], right=(1,))
+    word = cycle["status"].attrs["flag_meanings"].split()[int(cycle["status"])]
+    if word != "ok":
+        words = "does not turn fully" if word == "not_whole" else word.replace("_", " ")
+        return Table(("on its motor", "", ""), [("the machine", words, "")], right=(1,))
     rows: list[Row] = []
     for name, (title, beside) in STEADY.items():
         number, size = float(cycle[name]), abs(float(cycle[beside]))

@@ -34,18 +34,29 @@ def tolerance_parts(ds: xr.Dataset) -> Iterator[Part]:
     for name in _results(ds, "_share"):
         unit, number = unit_of(ds[name]), _numbers(ds, name)
         plain = PLAIN_UNITS.get(unit, unit)
-        sigma = with_unit(number["sigma"], unit, 3)
-        yield f"{name} = {with_unit(float(ds[name]), unit)}, sigma {sigma}{_remark(ds, name)}"
-        yield f"worst case, linear: {digits(number['worst_least'])} to {with_unit(number['worst_largest'], unit)}"
+        known = np.isfinite(number["sigma"])
+        sigma = f", sigma {with_unit(number['sigma'], unit, 3)}" if known else ""
+        yield f"{name} = {with_unit(float(ds[name]), unit)}{sigma}{_remark(ds, name)}"
+        if known:
+            yield f"worst case, linear: {digits(number['worst_least'])} to {with_unit(number['worst_largest'], unit)}"
         if "drawn_sigma" in number:
-            least, most = digits(number["drawn_least"]), with_unit(number["drawn_largest"], unit)
-            yield f"drawn designs, exact: sigma {digits(number['drawn_sigma'], 3)}, {least} to {most}"
+            yield f"drawn designs, exact: {_drawn(number, unit)}"
+        if not known:
+            continue
         share, lower, upper = (ds[f"{name}_{word}"].values for word in ("share", "lower", "upper"))
         rows: list[Row] = [
             (str(ds["parameter"].values[k]), f"{100.0 * share[k]:.1f} %", f"{lower[k]:+.3g}", f"{upper[k]:+.3g}", plain)
             for k in np.argsort(-np.nan_to_num(share), kind="stable")
         ]
         yield Table(("parameter", "of the variance", "at lower", "at upper limit", ""), rows, right=(1, 2, 3))
+
+
+def _drawn(number: dict[str, float], unit: str) -> str:
+    """Return the spread of drawn designs in words; some may have no finite result."""
+    ends = f"{digits(number['drawn_least'])} to {with_unit(number['drawn_largest'], unit)}"
+    if np.isfinite(number["drawn_sigma"]):
+        return f"sigma {digits(number['drawn_sigma'], 3)}, {ends}"
+    return f"{ends}, not finite in all of them" if np.isfinite(number["drawn_least"]) else "not finite in any of them"
 
 
 def _results(ds: xr.Dataset, ending: str) -> list[str]:

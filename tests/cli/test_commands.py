@@ -1,6 +1,7 @@
 """Commands for analyses: tables with the library's numbers, and clear errors."""
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,7 @@ from drawn import closed_figures  # noqa: F401
 
 import linksweep as ls
 from linksweep.cli.main import main
+from linksweep.cli.parser import Program
 from linksweep.scene.file.writing import write_scene
 
 PRESS = ls.example("press")
@@ -216,3 +218,26 @@ def test_a_partial_revolution_has_no_worst_angle_and_no_cycle(capsys):
     for word in ("flywheel", "orders"):
         assert main([word, "swing.nc"]) == 2
         assert "swing.nc: does not run all the way round" in capsys.readouterr().err
+
+
+def test_tolerances_of_results_that_are_not_finite_have_no_numbers(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    press = ls.example("press")
+    ls.save(replace(press, mechanism=replace(press.mechanism, ground=0.33)), "partly.toml")
+    words = ["--of", "F32_peak", "--tol", "ground"]
+    assert main(["tolerance", "partly.toml", *words, "js9", "--plot", "t.png"]) == 2
+    out, err = capsys.readouterr()
+    assert out.splitlines() == [
+        "F32_peak = inf N: no derivatives (unbounded)", "", "drawn designs, exact: not finite in any of them"
+    ]  # fmt: skip
+    assert err == "linksweep: nothing to draw: the result has no derivatives\n"
+    assert main(["tolerance", "press", *words, "-0.1", "0.1"]) == 0
+    out = capsys.readouterr().out
+    assert " to inf N, not finite in all of them" in out and "nan" not in out
+
+
+def test_the_guide_lists_the_commands_that_draw_figures():
+    guide = Path(__file__).parents[2] / ".docs" / "guide" / "command_line.md"
+    listed = guide.read_text("utf-8").split("draws those of ")[1].split(". ")[0]
+    drawing = [name for name, parser in Program().commands.by_name.items() if "--plot" in parser.format_help()]
+    assert sorted(re.findall(r"`([\w-]+)`", listed)) == sorted(drawing)
