@@ -17,8 +17,9 @@ def zero_angle(x: Array, y: Array) -> Array:
 
 
 def leg(hypotenuse: Array, other: Array) -> Array:
-    """Return a leg of a right triangle by the other leg."""
-    return np.sqrt((hypotenuse - other) * (hypotenuse + other))
+    """Return a leg of a right triangle by the other leg; NaN where this is the longer side."""
+    with np.errstate(invalid="ignore"):
+        return np.sqrt((hypotenuse - other) * (hypotenuse + other))
 
 
 def around(frame: Array, *angles: Array) -> Array:

@@ -99,11 +99,9 @@ def follow_arcs(scene: Scene, designs: Array, peaks: dict[str, SignalPeak]) -> A
         known[arcs.row[~sure]] = known[every.row[every.length <= 0.0]] = False  # some close at one angle alone
         numbers = _highest_of_designs(arcs.row, best, len(known))
         rows = np.flatnonzero(known & (numbers.value > -np.inf).any(axis=0))  # others are jammed on all arcs
-        part = group.some(rows)
-        frame = part.number(scene.mechanism.near_toggle_angle)
         for k, peak in enumerate(peaks.values()):
             value, angle, bound, samples = (table[k, rows] for table in numbers)
-            raise_to(peak, part, (value, angle_in_period(angle + frame, scene.period), bound, samples))
+            raise_to(peak, group.some(rows), (value, angle_in_period(angle, scene.period), bound, samples))
         left.append(np.delete(group.designs, rows))
     return np.sort(np.concatenate(left))
 
@@ -142,7 +140,8 @@ def _arcs(group: Group) -> Arcs:
 
 
 def _highest(group: Group, arcs: Arcs, signals: tuple[str, ...]) -> tuple[Best, Array]:
-    """Return the highest values of signals on arcs, one of each design of a group, and whether they are known."""
+    """Return the highest values of signals on arcs, one of each design of a group, and whether they are known; their
+    angles [degree] are those of the crank."""
     both, probes = np.repeat([0, 1], len(PROBES)), np.multiply.outer(arcs.nearest, np.tile(PROBES, 2))
     angles = np.concatenate([arcs.beside(both, probes), (arcs.start + 0.5 * arcs.length)[:, None]], axis=1)
     values = values_at(group, (*signals, "status"), angles)
@@ -158,9 +157,11 @@ def _highest(group: Group, arcs: Arcs, signals: tuple[str, ...]) -> tuple[Best, 
         limited = known[:, None] & ~grows & (closer + change >= best.value[..., None])
     limited &= ~infinite.any(axis=2, keepdims=True)
     best.samples[...] += values.shape[2]
-    for end, edge in enumerate((arcs.start, arcs.end)):
+    frame = group.number(group.scene.mechanism.near_toggle_angle)
+    edges = arcs.start + frame, arcs.end + frame
+    for end, edge in enumerate(edges):
         best.raise_to(infinite[..., end] & (best.value < np.inf), np.inf, edge, 0.0)
-    for end, edge in enumerate((arcs.start, arcs.end)):
+    for end, edge in enumerate(edges):
         limit, error, samples = _limits(group, arcs, end, signals, limited[..., end])
         limit = np.minimum(limit, closer[..., end] + change[..., end])
         best.raise_to(limit > best.value, limit, edge, error)

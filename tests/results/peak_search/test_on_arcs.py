@@ -1,5 +1,6 @@
 """Peaks of linkages that move over part of a turn: on pieces of their arcs, and limits at the toggles between these."""
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
@@ -64,6 +65,31 @@ def test_no_sample_exceeds_a_peak_and_paths_lead_to_the_same(name, monkeypatch):
     along_paths = ls.peaks(scene, of=of)
     for value in (quantity for quantity in map(str, peaks.data_vars) if f"{quantity}_at" in peaks):
         np.testing.assert_allclose(peaks[value], along_paths[value], rtol=1e-9, err_msg=value)
+
+
+LINK = partial(ls.Link, mass=1.0, inertia=0.01)
+
+
+@pytest.mark.parametrize("turned", [0.0, 25.0, -70.0])
+def test_angles_of_peaks_on_arcs_are_those_of_the_crank(turned):
+    """The pin B of a crank a is rightmost at 0 and highest at 90 degrees; a crank and a rod that is shorter, past which
+    the guide lies by e, are stretched at asin(e/(a + b)) from it."""
+    slider = ls.SliderCrank(LINK(0.1), LINK(0.08), slider_mass=1.0, offset=0.03, slide_angle=turned)
+    four_bar = ls.FourBar(LINK(0.2), LINK(0.25), LINK(0.1), ground=0.3, ground_angle=turned + 15.0)
+    inverted = ls.InvertedSliderCrank(LINK(0.2), LINK(0.1), 0.15, 1.0, offset=0.08, ground_angle=turned)
+    for machine, radius in ((slider, 0.1), (four_bar, 0.2), (inverted, 0.2)):
+        scene = ls.Scene(machine, omega2=10.0)
+        arcs = ls.check(scene)
+        peaks = ls.peaks(scene, of=["Bx", "By"])
+        for name, angle in {"Bx_max": 0.0, "By_max": 90.0, "Bx_min": 180.0, "By_min": 270.0}.items():
+            first, last = (float(arcs[f"arc_{end}"][0]) for end in ("start", "end"))
+            if (angle - first) % 360.0 < last - first:
+                assert abs(float(peaks[name])) == pytest.approx(radius, rel=1e-12)
+                assert (float(peaks[f"{name}_at"]) - angle + 180.0) % 360.0 - 180.0 == pytest.approx(0.0, abs=1e-5)
+    peaks = ls.peaks(ls.Scene(slider, omega2=10.0), of=["x_slider"])
+    assert float(peaks.x_slider_max) == pytest.approx(math.sqrt(0.18**2 - 0.03**2), rel=1e-12)
+    stretched = turned + math.degrees(math.asin(0.03 / 0.18))
+    assert float(peaks.x_slider_max_at) == pytest.approx(stretched % 360.0, abs=1e-5)
 
 
 def rocker_speed(theta2: np.ndarray, a: np.ndarray, b: float, c: float, d: float) -> np.ndarray:
