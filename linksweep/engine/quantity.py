@@ -12,8 +12,8 @@ from typing import Any
 
 from linksweep.base.validate import repeated
 
-LAST_UNJAMMED = 3.5
-"""Number above the statuses 0 to 3, and below those of a jam."""
+LAST_UNTOGGLED, TOGGLED, LAST_UNJAMMED = 1.5, 2.5, 3.5
+"""Numbers between statuses: below and above that of a toggle, 2, and below those of a jam."""
 
 
 @dataclass(frozen=True)
@@ -166,5 +166,6 @@ def _where_ok(status: Any, value: Any) -> Any:
 
 
 def _unless_jammed(status: Any, value: Any) -> Any:
-    """Return a value, NaN where the machine is jammed."""
-    return (status > LAST_UNJAMMED).where(math.nan, value)
+    """Return a value, NaN where the machine is jammed; and where it toggles, beside which it may be jammed all round."""
+    beyond_toggles = (status > LAST_UNTOGGLED).where((status > TOGGLED).where(value, math.nan), value)
+    return (status > LAST_UNJAMMED).where(math.nan, beyond_toggles)

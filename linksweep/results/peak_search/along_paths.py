@@ -346,7 +346,8 @@ def _limits(group: Group, signals: tuple[str, ...], paths: Paths, end: int, peak
     probe, closer = np.moveaxis(values_at(np.arange(len(signals)), np.arange(len(step)), probes), 2, 0)
     with np.errstate(invalid="ignore"):
         # ten times closer in x: a signal that varies as 1/x is ten times as large, a signal with a limit hardly changes
-        infinite = (np.abs(closer) > GROWTH * np.abs(probe)) & (np.abs(closer) > OF_PEAK * np.nan_to_num(np.abs(peak)))
+        grows = (np.abs(closer) > GROWTH * np.abs(probe)) & (np.abs(closer) > OF_PEAK * np.nan_to_num(np.abs(peak)))
+        infinite = grows & (step > 0.0)  # at an end that is no toggle a signal has a value, if only of rounding errors
         highest = closer + np.abs(closer - probe)
         limit, error, samples = limits_by_polynomials(values_at, step, ~infinite & (highest >= peak))
         limit = np.where(infinite, np.copysign(np.inf, closer), np.minimum(limit, highest))

@@ -74,7 +74,8 @@ def arc_ends_of_whole_period(group: Group) -> tuple[Array, ...]:
 def arcs_within(part: Part | Parts, group: Group, pieces: int = 1) -> Paths:
     """Return the arcs or turns of each design between two angles [degree], or those of its own part, in this number
     of equal pieces at least."""
-    toggles = arc_ends(group)
+    whole = group.assembly()[:, None] == EVERYWHERE  # the ends of its turns are no toggles
+    toggles = tuple(np.where(whole, np.nan, ends) for ends in arc_ends(group))
     none = (np.full((len(group.designs), 1), np.nan),) * 2
     return _along(group, _pieces(group, part, toggles, pieces), toggles or none, closely=True)
 
@@ -122,7 +123,7 @@ def _pieces(group: Group, part: Part | Parts, toggles: tuple[Array, ...], pieces
     whole = (kind[:, None] == EVERYWHERE) | (not toggles)
     period = group.scene.period_of_motion
     turn = [np.where(whole, ends, np.nan) for ends in (0.0, period)]
-    arcs = [np.where(whole, np.nan, ends) for ends in toggles or (np.nan, np.nan)]
+    arcs = toggles or np.full((2, *whole.shape), np.nan)
     start, end = (np.concatenate(ends, axis=1)[..., None, None] for ends in zip(turn, arcs, strict=True))
     away = period * (np.round((edges[:, :, :-1] - start) / period) + NEIGHBOURS)
     first, last = np.maximum(start + away, edges[:, :, :-1]), np.minimum(end + away, edges[:, :, 1:])

@@ -165,3 +165,36 @@ def test_a_motor_beside_a_linkage_with_friction_and_a_load_over_the_angle():
     load = ls.motor_load(rough, motor, theta2=PER_TURN)
     assert float(load.torque_margin_min) == pytest.approx(float(load.torque_margin.min()), rel=1e-9)
     assert float(load.torque_margin_min) <= float(load.torque_margin.min())
+
+
+@pytest.mark.parametrize("angle", [30.0, 17.3])
+def test_values_end_where_friction_jams_two_guides_that_become_parallel(angle):
+    """A pin slides in a fixed guide at the height 0.3 and in one of the crank, turned by an angle from it, a past B:
+    x = Px + (0.3 − Py)/tan(θ2 + angle). Within atan(friction) of parallel the slide that friction holds is jammed."""
+    guides = {
+        "g0": ls.Guide(through=(0.0, 0.3), friction=0.2),
+        "g1": ls.Guide(of="crank", through=(0.0, 0.05), angle=angle),
+    }
+    machine = ls.Linkage(
+        "crank A-B, s1 D on g0, s2 D on g1",
+        ground={"A": (0.0, 0.0)},
+        guides=guides,
+        crank=ls.Link(0.1, 1.0, 0.01, 0.05),
+        s1=ls.Slider(1.0),
+        s2=ls.Slider(1.0),
+    )
+    scene = ls.Scene(machine, omega2=10.0)
+
+    def x_at(theta2: np.ndarray) -> np.ndarray:
+        turned = np.radians(theta2)
+        x, y = -0.05 * np.sin(turned), 0.05 * np.cos(turned)
+        return x + (0.3 - y) / np.tan(np.radians(theta2 + angle))
+
+    dense = ls.sweep(scene, 7200, of=["Dx"])
+    np.testing.assert_allclose(dense.Dx, np.where(dense.status == 0, x_at(dense.theta2.values), np.nan), rtol=1e-10)
+    edges = np.add.outer([-angle, 180.0 - angle], math.degrees(math.atan(0.2)) * np.array([-1.0, 1.0])).ravel()
+    for part in (None, (10.0, 370.0)):
+        peaks = ls.peaks(scene, of=["Dx", "reduced_inertia"], between=part)
+        assert float(peaks.Dx_max) == pytest.approx(x_at(edges).max(), rel=1e-7)
+        assert float(peaks.Dx_min) == pytest.approx(x_at(edges).min(), rel=1e-7)
+        assert np.isfinite(peaks.reduced_inertia_max)

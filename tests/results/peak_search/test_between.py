@@ -159,3 +159,15 @@ def compare_alone(scene, designs, of, **part):
         alone = ls.peaks(ls.scene_at(scene, d=design), of, **part)
         for name in alone.data_vars:
             np.testing.assert_array_equal(every[name].isel(d=design, missing_dims="ignore"), alone[name], err_msg=name)
+
+
+@pytest.mark.parametrize("between", [(10, 60), (0, 359), (-100, 170), (20, 200)])
+def test_a_force_that_is_0_but_for_rounding_errors_is_not_infinite_at_the_ends_of_a_part(between):
+    """Across a coupler without mass there is no force."""
+    machine = ls.FourBar(
+        ls.Link(0.1, 1.0, 0.01, 0.05), ls.Link(0.28, 0.0, 0.0), ls.Link(0.28, 1.0, 0.02, 0.1), ground=0.25
+    )
+    ds = ls.peaks(ls.Scene(machine, omega2=30.0), of=["F43y_link3", "F43"], between=between)
+    assert float(ds.F43y_link3_peak) < 1e-14 * float(ds.F43_peak) and int(ds.status) == 0
+    ds = ls.peaks(ls.example("whitworth"), of=["aG5y"], between=between)  # of a ram that moves along x
+    assert float(ds.aG5y_peak) < 1e-12 and int(ds.status) == 0
