@@ -166,6 +166,6 @@ def _where_ok(status: Any, value: Any) -> Any:
 
 
 def _unless_jammed(status: Any, value: Any) -> Any:
-    """Return a value, NaN where the machine is jammed; and where it toggles, beside which it may be jammed all round."""
+    """Return a value, NaN where the machine is jammed, or toggles: it may be jammed on both sides of that."""
     beyond_toggles = (status > LAST_UNTOGGLED).where((status > TOGGLED).where(value, math.nan), value)
     return (status > LAST_UNJAMMED).where(math.nan, beyond_toggles)

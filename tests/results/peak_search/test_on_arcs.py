@@ -67,6 +67,11 @@ def test_no_sample_exceeds_a_peak_and_paths_lead_to_the_same(name, monkeypatch):
         np.testing.assert_allclose(peaks[value], along_paths[value], rtol=1e-9, err_msg=value)
 
 
+def away(angle: xr.DataArray, other: float) -> float:
+    """Return the distance between two crank angles [degree]."""
+    return abs((float(angle) - other + 180.0) % 360.0 - 180.0)
+
+
 LINK = partial(ls.Link, mass=1.0, inertia=0.01)
 
 
@@ -79,17 +84,17 @@ def test_angles_of_peaks_on_arcs_are_those_of_the_crank(turned):
     inverted = ls.InvertedSliderCrank(LINK(0.2), LINK(0.1), 0.15, 1.0, offset=0.08, ground_angle=turned)
     for machine, radius in ((slider, 0.1), (four_bar, 0.2), (inverted, 0.2)):
         scene = ls.Scene(machine, omega2=10.0)
-        arcs = ls.check(scene)
-        peaks = ls.peaks(scene, of=["Bx", "By"])
+        peaks, checks = ls.peaks(scene, of=["Bx", "By", "F12"]), ls.check(scene)
+        first, last = float(checks.arc_start[0]), float(checks.arc_end[0])
         for name, angle in {"Bx_max": 0.0, "By_max": 90.0, "Bx_min": 180.0, "By_min": 270.0}.items():
-            first, last = (float(arcs[f"arc_{end}"][0]) for end in ("start", "end"))
             if (angle - first) % 360.0 < last - first:
                 assert abs(float(peaks[name])) == pytest.approx(radius, rel=1e-12)
-                assert (float(peaks[f"{name}_at"]) - angle + 180.0) % 360.0 - 180.0 == pytest.approx(0.0, abs=1e-5)
+                assert away(peaks[f"{name}_at"], angle) < 1e-5
+        assert np.isinf(peaks.F12_peak)
+        assert min(away(peaks.F12_peak_at, toggle) for toggle in (first, last)) < 1e-9
     peaks = ls.peaks(ls.Scene(slider, omega2=10.0), of=["x_slider"])
     assert float(peaks.x_slider_max) == pytest.approx(math.sqrt(0.18**2 - 0.03**2), rel=1e-12)
-    stretched = turned + math.degrees(math.asin(0.03 / 0.18))
-    assert float(peaks.x_slider_max_at) == pytest.approx(stretched % 360.0, abs=1e-5)
+    assert away(peaks.x_slider_max_at, turned + math.degrees(math.asin(0.03 / 0.18))) < 1e-5
 
 
 def rocker_speed(theta2: np.ndarray, a: np.ndarray, b: float, c: float, d: float) -> np.ndarray:
