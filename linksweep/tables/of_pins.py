@@ -17,8 +17,8 @@ BEARING = {  # column of a pin: variable, and the statistic over the cycle
     "mean": ("F", "mean"),
     "equivalent": ("equivalent_load", ""),
     "turns": ("rotation", ""),
-    "pressure": ("pressure", "max"),
-    "PV": ("pv", "max"),
+    "pressure": ("pressure_peak", ""),
+    "PV of samples": ("pv", "max"),
     "L10h": ("L10h", ""),
 }
 

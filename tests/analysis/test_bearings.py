@@ -168,6 +168,28 @@ def test_pressure_and_friction():
     assert np.isnan(bearings.L10).all()
 
 
+def a_pulse_between_samples() -> xr.DataArray:
+    """Return a load that is 3000 N at 200.25 degrees, and 0 at every half degree."""
+    angles = np.union1d(np.arange(0.0, 361.0, 20.0), [200.2, 200.25, 200.3])
+    return xr.DataArray(np.where(angles == 200.25, 3000.0, 0.0), {"theta2": angles}, "theta2")
+
+
+def test_the_largest_pressure_is_that_of_the_largest_load():
+    """3000 N on 20 mm x 30 mm is 5 MPa, whatever the samples have."""
+    pulse = ls.Load("crank", force=(a_pulse_between_samples(), 0.0), interpolation="linear")
+    bush = ls.Bearing(diameter=0.02, length=0.03)
+    bearings = ls.bearings(ls.Scene(TURNING, omega2=30.0, loads=[pulse]), {"A": bush})
+    at_a = bearings.sel(pin="A")
+    assert float(at_a.pressure.max()) < 1.0
+    assert float(at_a.pressure_peak) == pytest.approx(5e6, rel=1e-10)
+    title, row = (line.split("  ") for line in str(bearings.linksweep).splitlines()[:2])
+    title, row = ([cell.strip() for cell in cells if cell] for cells in (title, row))
+    assert row[title.index("pressure [MPa]")] == "5.000" and title[-1] == "PV of samples [MPa m/s]"
+    engine = ls.MultiCylinder(ENGINE, crank_angles=[0.0], main_positions=[-0.05, 0.05])
+    mains = ls.bearings(engine, {"main1": bush}, theta2=36).sel(main="main1")
+    assert float(mains.pressure_peak) == pytest.approx(float(mains.F_peak) / 6e-4, rel=1e-14)
+
+
 def test_two_angles_are_the_ends_of_a_part_of_a_turn():
     """Loads, pressure and the table are those of the way between the ends, not of the two positions there."""
     bush = {"C": ls.Bearing(diameter=0.01, length=0.02)}

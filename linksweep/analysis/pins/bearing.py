@@ -29,6 +29,7 @@ TEXTS = {
     "F": ("N", "magnitude of the pin force"),
     "F_peak": ("N", "largest load over the continuous cycle or part of a turn"),
     "F_peak_at": ("degree", "crank angle of the largest load"),
+    "pressure_peak": ("Pa", "projected pressure under the largest load"),
     "Fx": ("N", "pin force Fij of link i on link j, component along the x axis of the frame"),
     "Fy": ("N", "pin force Fij of link i on link j, component along the y axis of the frame"),
     "rotation_speed": ("rad/s", "angular velocity of link j relative to link i, of the pin force Fij"),
@@ -123,6 +124,19 @@ def side_by_side(
     return described | {"life_status": life_status}
 
 
+def exact_loads(highest: xr.Dataset, name: str, bearing: Bearing) -> dict[str, xr.DataArray]:
+    """Return the exact largest load of a pin, of this name, its angle, and the pressure under it."""
+    force = highest[f"{name}_peak"]
+    pressure = plain.projected_pressure(force, *_sizes(bearing))
+    return {"F_peak": force, "F_peak_at": highest[f"{name}_peak_at"], "pressure_peak": pressure}
+
+
+def _sizes(bearing: Bearing) -> tuple[Number, Number]:
+    """Return diameter and length; NaN of those that are unknown."""
+    diameter, length = (np.nan if size is None else size for size in (bearing.diameter, bearing.length))
+    return diameter, length
+
+
 def journal_results(
     cycle: xr.Dataset, name: str, speed: xr.DataArray, turns: xr.DataArray, bearing: Bearing
 ) -> dict[str, xr.DataArray]:
@@ -130,8 +144,7 @@ def journal_results(
 
     `turns` is proportional to the rotation for which each sample stands.
     """
-    force, sizes = cycle[name], (bearing.diameter, bearing.length)
-    diameter, length = (np.nan if size is None else size for size in sizes)
+    force, (diameter, length) = cycle[name], _sizes(bearing)
     sliding = plain.sliding_speed(speed, diameter)
     pressure = plain.projected_pressure(force, diameter, length)
     loss = plain.friction_loss(plain.friction_circle(bearing.friction, diameter), force, speed)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from linksweep.analysis.pins.bearing import TEXTS, Bearing, checked_pins, journal_results, side_by_side
+from linksweep.analysis.pins.bearing import TEXTS, Bearing, checked_pins, exact_loads, journal_results, side_by_side
 from linksweep.analysis.pins.bearing_life import UNBOUNDED, rotation_under_load
 from linksweep.analysis.pins.main_bearings import main_bearings
 from linksweep.base.memory import require_memory
@@ -75,7 +75,8 @@ def bearings(
         - `rotation` [degree] over the cycle, or once over the part of a turn; `equivalent_load` [N], `L10` [million
           revolutions] and `L10h` [hours]: integrals over the continuous angle, which do not depend on the count of
           samples
-        - `F_peak` [N] and `F_peak_at` [degree], exact as in `linksweep.peaks`, over the cycle or the part of a turn
+        - `F_peak` [N] and `F_peak_at` [degree], exact as in `linksweep.peaks`, over the cycle or the part of a turn;
+          `pressure_peak` [Pa] under this load
         - `status` of each sample; integrals leave out angles that are not ok
         - `life_status` (…, pin): ok, partial_revolution (the life of the angles that are ok), nothing_solved (NaN),
           unbounded_load (equivalent load inf, life 0), no_rotation (NaN).
@@ -96,10 +97,10 @@ def bearings(
     >>> import linksweep as ls
     >>> pins = {"C": ls.Bearing(diameter=0.01, length=0.02, capacity=5000.0)}
     >>> print(ls.bearings(ls.example("press"), pins).linksweep)
-    pin  largest [N]  mean [N]  equivalent [N]  turns [°]  pressure [MPa]  PV [MPa m/s]  L10h [h]
+    pin  largest [N]  mean [N]  equivalent [N]  turns [°]  pressure [MPa]  PV of samples [MPa m/s]  L10h [h]
     A          365.6     268.1           282.9      360.0
     B          354.5     263.1           268.6      360.0
-    C          388.3     149.4           196.3      110.5           1.941       0.09757   2991000
+    C          388.3     149.4           196.3      110.5           1.941                  0.09757   2991000
     D          376.3     153.9           194.6      122.6
     """
     if isinstance(scene, MultiCylinder):
@@ -118,7 +119,7 @@ def bearings(
     weights, speeds = _weights(cycle["theta2"], part), {pin: cycle[f"omega_{pin}"] for pin in links}
     parts = [
         {"F": cycle[forces[pin]]}
-        | {"F_peak": highest[f"{forces[pin]}_peak"], "F_peak_at": highest[f"{forces[pin]}_peak_at"]}
+        | exact_loads(highest, forces[pin], bearing)
         | _in_frames(cycle, *links[pin], scene.mechanism.journals[pin])
         | journal_results(cycle, forces[pin], speeds[pin], abs(speeds[pin] / cycle["omega2"]) * weights, bearing)
         | rotation.life(pin, bearing.capacity, bearing.exponent)

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 
 import xarray as xr
 
-from linksweep.analysis.pins.bearing import TEXTS, Bearing, bearing_problems, journal_results, side_by_side
+from linksweep.analysis.pins.bearing import TEXTS, Bearing, bearing_problems, exact_loads, journal_results, side_by_side
 from linksweep.analysis.pins.bearing_life import rotation_under_load
 from linksweep.base.degrees import cos_sin
 from linksweep.base.validate import count_problems, refuse
@@ -42,7 +42,8 @@ def main_bearings(machine: MultiCylinder, pins: Mapping[str, Bearing] | None, th
     highest = peaks(machine, of=mains.values())
     speed = xr.DataArray(machine.engine.omega2)
     parts = [
-        {"F": cycle[force], "F_peak": highest[f"{force}_peak"], "F_peak_at": highest[f"{force}_peak_at"]}
+        {"F": cycle[force]}
+        | exact_loads(highest, force, fitted[name])
         | _in_frames(cycle, force)
         | journal_results(cycle, force, speed, xr.ones_like(cycle["theta2"]), fitted[name])
         | rotation.life(name, fitted[name].capacity, fitted[name].exponent)
