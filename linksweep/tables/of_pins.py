@@ -8,25 +8,25 @@ import numpy as np
 import xarray as xr
 
 from linksweep.analysis.pins.bearing_life import UNBOUNDED
-from linksweep.results.over_time import mean_over_time
 from linksweep.tables.cells import finite_or_inf, handy_unit, unit_of
 from linksweep.tables.table import Part, Row, Table
 
-BEARING = {  # column of a pin: variable, and the statistic over the cycle
-    "largest": ("F_peak", ""),
-    "mean": ("F", "mean"),
-    "equivalent": ("equivalent_load", ""),
-    "turns": ("rotation", ""),
-    "pressure": ("pressure_peak", ""),
-    "PV of samples": ("pv", "max"),
-    "L10h": ("L10h", ""),
+BEARING = {
+    "largest": "F_peak",
+    "mean": "F_mean",
+    "equivalent": "equivalent_load",
+    "turns": "rotation",
+    "pressure": "pressure_peak",
+    "PV of samples": "pv",
+    "L10h": "L10h",
 }
+"""Columns of a pin, and their variables."""
 
 
 def bearing_parts(ds: xr.Dataset) -> Iterator[Part]:
     """Yield the table of bearings, a line for each pin, with the reason why a life is not of a whole cycle."""
     dim = str(ds["life_status"].dims[-1]) if ds["life_status"].dims else "pin"
-    columns = dict(_column(ds, dim, title, *source) for title, source in BEARING.items() if source[0] in ds)
+    columns = dict(_column(ds, dim, title, name) for title, name in BEARING.items() if name in ds)
     columns = {title: column for title, column in columns.items() if not np.isnan(column).all()}
     status = ds["life_status"]
     words = [word.replace("_", " ") for word in str(status.attrs["flag_meanings"]).split()]
@@ -63,14 +63,12 @@ def _chosen(ds: xr.Dataset, k: int, unit: float) -> Row:
     return name, text, *(finite_or_inf(float(ds[each].values[k])) for each in ("L10h", "static_safety"))
 
 
-def _column(ds: xr.Dataset, dim: str, title: str, name: str, how: str) -> tuple[str, np.ndarray]:
-    """Return the title of a column with its unit, and a number for each pin."""
+def _column(ds: xr.Dataset, dim: str, title: str, name: str) -> tuple[str, np.ndarray]:
+    """Return the title of a column with its unit, and a number for each pin, of samples the largest."""
     values = ds[name]
     unit, size = handy_unit(values)
-    if how:
-        samples = values.broadcast_like(ds["theta2"])
-        values = samples.max("theta2") if how == "max" else mean_over_time(samples, ds)
-    if how == "max":
+    if "theta2" in values.dims:
+        values = values.max("theta2")
         values = values.where((ds["life_status"] != UNBOUNDED) | values.isnull(), np.inf)
     return f"{title} [{unit}]", np.broadcast_to(values.values, ds.sizes[dim]) / size
 

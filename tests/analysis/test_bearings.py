@@ -1,5 +1,6 @@
 """bearings: frames, rotation, pressure and friction against their definitions; life against published examples."""
 
+import re
 from dataclasses import replace
 
 import matplotlib.pyplot as plt
@@ -7,6 +8,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from refusals import LOOP, refusal
+from scipy.integrate import quad
 
 import linksweep as ls
 
@@ -182,12 +184,45 @@ def test_the_largest_pressure_is_that_of_the_largest_load():
     at_a = bearings.sel(pin="A")
     assert float(at_a.pressure.max()) < 1.0
     assert float(at_a.pressure_peak) == pytest.approx(5e6, rel=1e-10)
-    title, row = (line.split("  ") for line in str(bearings.linksweep).splitlines()[:2])
-    title, row = ([cell.strip() for cell in cells if cell] for cells in (title, row))
-    assert row[title.index("pressure [MPa]")] == "5.000" and title[-1] == "PV of samples [MPa m/s]"
+    (head, row) = (re.split(r" {2,}", line.strip()) for line in str(bearings.linksweep).splitlines()[:2])
+    assert row[head.index("pressure [MPa]")] == "5.000" and head[-1] == "PV of samples [MPa m/s]"
     engine = ls.MultiCylinder(ENGINE, crank_angles=[0.0], main_positions=[-0.05, 0.05])
     mains = ls.bearings(engine, {"main1": bush}, theta2=36).sel(main="main1")
     assert float(mains.pressure_peak) == pytest.approx(float(mains.F_peak) / 6e-4, rel=1e-14)
+
+
+def column(ds: xr.Dataset, title: str) -> list[str]:
+    """Return a column of a table without empty cells."""
+    head, *rows = (re.split(r" {2,}", line.strip()) for line in str(ds.linksweep).splitlines())
+    return [row[head.index(title)] for row in rows]
+
+
+def test_the_mean_load_is_exact():
+    """A triangle 0.1 degrees wide and 3000 N high, between two samples: 0 of these, 3000·0.05/360 N."""
+    pulse = ls.Load("crank", force=(a_pulse_between_samples(), 0.0), interpolation="linear")
+    bearings = ls.bearings(ls.Scene(TURNING, omega2=30.0, loads=[pulse]))
+    assert float(bearings.F_mean.sel(pin="A")) == pytest.approx(3000.0 * 0.05 / 360.0, rel=1e-9)
+    assert column(bearings, "mean [N]")[0] == "0.4167"
+
+
+def test_the_mean_of_a_load_that_grows_without_bound_is_its_integral():
+    """A coupler without mass bears M/(c·sin μ), μ between it and the rocker: one over the square root of the distance
+    from the toggle, which has an integral. Its inertia bears the inverse square, which has none."""
+    a, b, c, d, moment = 0.1, 0.12, 0.12, 0.2, 8.0
+    end = np.arccos((a**2 + d**2 - (b + c) ** 2) / (2.0 * a * d))
+
+    def force(theta2):
+        cosine = (b**2 + c**2 - a**2 - d**2 + 2.0 * a * d * np.cos(theta2)) / (2.0 * b * c)
+        return moment / (c * np.sqrt((1.0 - cosine) * (1.0 + cosine)))
+
+    mean = quad(lambda u: force(end * (1.0 - u * u)) * 2.0 * u, 0.0, 1.0)[0]
+    stuck = ls.FourBar(*(ls.Link(length, 0.0, 0.0) for length in (a, b, c)), ground=d)
+    scene = ls.Scene(stuck, omega2=5.0, loads=[ls.Load("rocker", torque=-moment)])
+    bearings = ls.bearings(scene)
+    assert float(bearings.F_mean.sel(pin="C")) == pytest.approx(mean, rel=1e-6)
+    assert column(bearings, "mean [N]")[2] == f"{mean:.4g}"
+    heavy = ls.FourBar(LIGHT, *[ls.Bar(length, 0.02, 0.02, 7750.0) for length in (b, c)], ground=d)
+    assert column(ls.bearings(ls.Scene(heavy, omega2=5.0)), "mean [N]") == ["inf"] * 4
 
 
 def test_two_angles_are_the_ends_of_a_part_of_a_turn():

@@ -20,7 +20,9 @@ from linksweep.base.fields import field_problems, numbers, parameter
 from linksweep.base.validate import Number, choice_problems, name_problems, quote, refuse
 from linksweep.physics import bearing as plain
 from linksweep.results.compute import require
+from linksweep.results.cylinders.multi_cylinder import MultiCylinder
 from linksweep.results.dataset import flags, joined, with_units
+from linksweep.results.peaks import peaks
 from linksweep.scene.dimensions import argument_problems
 from linksweep.scene.scene import Scene
 
@@ -29,6 +31,7 @@ TEXTS = {
     "F": ("N", "magnitude of the pin force"),
     "F_peak": ("N", "largest load over the continuous cycle or part of a turn"),
     "F_peak_at": ("degree", "crank angle of the largest load"),
+    "F_mean": ("N", "mean load over the time of the continuous cycle or part of a turn"),
     "pressure_peak": ("Pa", "projected pressure under the largest load"),
     "Fx": ("N", "pin force Fij of link i on link j, component along the x axis of the frame"),
     "Fy": ("N", "pin force Fij of link i on link j, component along the y axis of the frame"),
@@ -124,11 +127,17 @@ def side_by_side(
     return described | {"life_status": life_status}
 
 
-def exact_loads(highest: xr.Dataset, name: str, bearing: Bearing) -> dict[str, xr.DataArray]:
-    """Return the exact largest load of a pin, of this name, its angle, and the pressure under it."""
-    force = highest[f"{name}_peak"]
-    pressure = plain.projected_pressure(force, *_sizes(bearing))
-    return {"F_peak": force, "F_peak_at": highest[f"{name}_peak_at"], "pressure_peak": pressure}
+def exact_loads(
+    machine: Scene | MultiCylinder, forces: Iterable[str], between: tuple[float, float] | None = None
+) -> xr.Dataset:
+    """Return the exact peaks and means of pin forces."""
+    return peaks(machine, of=[f"{force}_{word}" for force in forces for word in ("peak", "mean")], between=between)
+
+
+def load_results(exact: xr.Dataset, name: str, bearing: Bearing) -> dict[str, xr.DataArray]:
+    """Return the largest load of a pin, of this name, its angle, the pressure under it, and the mean load."""
+    loads = {f"F_{word}": exact[f"{name}_{word}"] for word in ("peak", "peak_at", "mean")}
+    return loads | {"pressure_peak": plain.projected_pressure(loads["F_peak"], *_sizes(bearing))}
 
 
 def _sizes(bearing: Bearing) -> tuple[Number, Number]:

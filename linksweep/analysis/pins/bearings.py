@@ -8,7 +8,15 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from linksweep.analysis.pins.bearing import TEXTS, Bearing, checked_pins, exact_loads, journal_results, side_by_side
+from linksweep.analysis.pins.bearing import (
+    TEXTS,
+    Bearing,
+    checked_pins,
+    exact_loads,
+    journal_results,
+    load_results,
+    side_by_side,
+)
 from linksweep.analysis.pins.bearing_life import UNBOUNDED, rotation_under_load
 from linksweep.analysis.pins.main_bearings import main_bearings
 from linksweep.base.memory import require_memory
@@ -20,7 +28,6 @@ from linksweep.results.cylinders.multi_cylinder import MultiCylinder
 from linksweep.results.dataset import by_command, joined, with_units
 from linksweep.results.over_time import reach
 from linksweep.results.peak_search.paths import Part
-from linksweep.results.peaks import peaks
 from linksweep.results.sweep import sweep
 from linksweep.scene.designs.lazy import in_memory
 from linksweep.scene.grid import crank_grid
@@ -75,8 +82,8 @@ def bearings(
         - `rotation` [degree] over the cycle, or once over the part of a turn; `equivalent_load` [N], `L10` [million
           revolutions] and `L10h` [hours]: integrals over the continuous angle, which do not depend on the count of
           samples
-        - `F_peak` [N] and `F_peak_at` [degree], exact as in `linksweep.peaks`, over the cycle or the part of a turn;
-          `pressure_peak` [Pa] under this load
+        - `F_peak` [N], `F_peak_at` [degree] and `F_mean` [N], exact as in `linksweep.peaks`, over the cycle or the part
+          of a turn; `pressure_peak` [Pa] under the largest load
         - `status` of each sample; integrals leave out angles that are not ok
         - `life_status` (…, pin): ok, partial_revolution (the life of the angles that are ok), nothing_solved (NaN),
           unbounded_load (equivalent load inf, life 0), no_rotation (NaN).
@@ -115,11 +122,11 @@ def bearings(
     forces = {pin: force_name(*pair) for pin, pair in links.items()}
     exponents = {pin: bearing.exponent for pin, bearing in fitted.items()}
     rotation = rotation_under_load(scene, forces, exponents, part)
-    highest = peaks(scene, of=dict.fromkeys(forces.values()), between=part)
+    exact = exact_loads(scene, forces.values(), part)
     weights, speeds = _weights(cycle["theta2"], part), {pin: cycle[f"omega_{pin}"] for pin in links}
     parts = [
         {"F": cycle[forces[pin]]}
-        | exact_loads(highest, forces[pin], bearing)
+        | load_results(exact, forces[pin], bearing)
         | _in_frames(cycle, *links[pin], scene.mechanism.journals[pin])
         | journal_results(cycle, forces[pin], speeds[pin], abs(speeds[pin] / cycle["omega2"]) * weights, bearing)
         | rotation.life(pin, bearing.capacity, bearing.exponent)

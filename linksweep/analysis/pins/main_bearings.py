@@ -10,7 +10,15 @@ from collections.abc import Mapping
 
 import xarray as xr
 
-from linksweep.analysis.pins.bearing import TEXTS, Bearing, bearing_problems, exact_loads, journal_results, side_by_side
+from linksweep.analysis.pins.bearing import (
+    TEXTS,
+    Bearing,
+    bearing_problems,
+    exact_loads,
+    journal_results,
+    load_results,
+    side_by_side,
+)
 from linksweep.analysis.pins.bearing_life import rotation_under_load
 from linksweep.base.degrees import cos_sin
 from linksweep.base.validate import count_problems, refuse
@@ -18,7 +26,6 @@ from linksweep.results.cylinders import cylinders_between  # noqa: F401  (regist
 from linksweep.results.cylinders.cylinder_sums import main
 from linksweep.results.cylinders.multi_cylinder import MultiCylinder
 from linksweep.results.dataset import by_command, joined
-from linksweep.results.peaks import peaks
 
 FRAMES = ("ground", "journal")
 MAIN_TEXTS = TEXTS | {
@@ -39,11 +46,11 @@ def main_bearings(machine: MultiCylinder, pins: Mapping[str, Bearing] | None, th
     components = [f"{force}{axis}" for force in mains.values() for axis in ("", "x", "y")]
     cycle = machine.sweep(theta2, of=components)
     rotation = rotation_under_load(machine, mains, {name: b.exponent for name, b in fitted.items()})
-    highest = peaks(machine, of=mains.values())
+    exact = exact_loads(machine, mains.values())
     speed = xr.DataArray(machine.engine.omega2)
     parts = [
         {"F": cycle[force]}
-        | exact_loads(highest, force, fitted[name])
+        | load_results(exact, force, fitted[name])
         | _in_frames(cycle, force)
         | journal_results(cycle, force, speed, xr.ones_like(cycle["theta2"]), fitted[name])
         | rotation.life(name, fitted[name].capacity, fitted[name].exponent)
