@@ -93,6 +93,10 @@ def _bearings(options: argparse.Namespace) -> None:
     import numpy as np
 
     scene = one_design(options.scene)
+    sizes = {"--diameter": options.diameter, "--length": options.length}
+    missing = [name for name, size in sizes.items() if size is None]
+    if len(missing) == 1:
+        raise ValueError(f"{missing[0]}: missing; a pressure needs --diameter and --length")
     bearing = ls.Bearing(options.diameter, options.length, capacity=options.capacity, kind=options.kind)
     theta2 = np.linspace(options.theta2[0], options.theta2[1], SAMPLES) if options.theta2 else SAMPLES
     print_answer(ls.bearings(scene, dict.fromkeys(scene.mechanism.pins, bearing), theta2=theta2))

@@ -60,6 +60,13 @@ def test_bearings(table):
     assert table("bearings", "press.toml")["pin"] == titles[:4]  # quantities without data have no column
 
 
+@pytest.mark.parametrize(("stated", "missing"), [("--diameter", "--length"), ("--length", "--diameter")])
+def test_one_size_of_a_bush_yields_no_pressure(stated, missing, capsys):
+    assert main(["bearings", "press", stated, "20 mm"]) == 2
+    out, err = capsys.readouterr()
+    assert out == "" and err == f"linksweep: {missing}: missing; a pressure needs --diameter and --length\n"
+
+
 def test_an_example_is_taken_by_its_name_unless_a_file_has_it(table, capsys):
     assert table("check", "press") == table("check", "press.toml") and table("orders", "watt-2")
     Path("press").write_text("omega2 = 30")
