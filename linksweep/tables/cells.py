@@ -10,9 +10,6 @@ import xarray as xr
 
 PLAIN_UNITS = {"degree": "°", "1": ""}
 """Units as they follow a number, where that is not their own spelling."""
-HANDY = {"Pa": ("MPa", 1e6), "Pa m/s": ("MPa m/s", 1e6), "degree": ("°", 1.0)}
-"""Units of which the numbers are neither very large nor very small, and their number of SI units."""
-
 NO_VALUE = "no value"
 """Word for a flag that is NaN."""
 
@@ -40,8 +37,11 @@ def finite_or_inf(value: float) -> str:
 
 
 def handy_unit(values: xr.DataArray) -> tuple[str, float]:
-    """Return the unit in which a table shows a variable, and its size in the variable's own unit."""
-    return HANDY.get(unit_of(values), (unit_of(values), 1.0))
+    """Return the unit in which a table shows a variable, as MPa for Pa, and its size in the variable's own unit."""
+    unit = unit_of(values)
+    if unit.partition(" ")[0] == "Pa":
+        return f"M{unit}", 1e6
+    return "°" if unit == "degree" else unit, 1.0
 
 
 def unit_of(values: xr.DataArray) -> str:

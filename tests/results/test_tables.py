@@ -162,6 +162,18 @@ def test_a_session_has_units_and_gives_them_back():
     assert force.F32_peak.units == "N"  # the Dataset stays as it is
 
 
+def test_pressures_are_in_megapascals_in_every_length():
+    """A pressure times a speed in cm/s is 100 times that in m/s."""
+    bush = {"B": ls.Bearing(diameter=0.02, length=0.03)}
+    rows = {}
+    for units in ("SI", "kN, cm"):
+        with ls.units(units):
+            head, _, row, *_ = cells(repr(ls.bearings(PRESS, bush, theta2=36).linksweep))
+        rows |= {title: float(number) for title, number in zip(head[-2:], row[-2:], strict=True)}
+    assert rows["PV of samples [MPa cm/s]"] == pytest.approx(100.0 * rows["PV of samples [MPa m/s]"], rel=1e-3)
+    assert len(rows) == 3 and "pressure [MPa]" in rows
+
+
 def test_a_scene_states_its_own_units(tmp_path, monkeypatch, capsys):
     scene = replace(PRESS, units="in, lbf, rpm")
     ls.save(scene, tmp_path / "press.toml")
