@@ -18,6 +18,7 @@ from linksweep.results.peaks import peaks
 from linksweep.results.sweep import sweep
 from linksweep.scene.scene import Scene
 from linksweep.scene.shown_units import shown_units
+from linksweep.tables.of_balance import BALANCED, zero_of_rounding
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -27,7 +28,6 @@ STYLES: dict[str, dict[str, Any]] = {
     "before": {"color": BLUE, "linewidth": 3.0, "alpha": 0.45},  # broad: seen where the other lies on it
     "after": {"color": VERMILION},
 }
-ROUNDING = 1e-9  # N or N m
 SHAKING = ("Fsx", "Fsy", "Ms")
 
 
@@ -71,6 +71,8 @@ def balance(before: Scene, after: Scene, *, theta2: int = 720) -> Figure:
     scenes = {"before": before, "after": after}
     cycles = {name: _cycle(scene, theta2, [*SHAKING, drive, *pins]) for name, scene in scenes.items()}
     largest = {name: _largest(scene, ["Fs", "Ms", drive, *pins]) for name, scene in scenes.items()}
+    for name, size in largest["before"].items():
+        largest["after"][name] = zero_of_rounding(largest["after"][name], BALANCED * size)
     unit = {name: str(item.attrs.get("units", "")) for name, item in cycles["before"].items()}
     worst = max(pins, key=lambda pin: largest["before"][pin])
     with panels(2, 2, figsize=(7.1, 6.0)) as (figure, ((above, beside), (below, last))):
@@ -119,8 +121,8 @@ def _over_angle(
 
 
 def _legend_text(when: str, largest: float) -> str:
-    """Return the legend of a curve, with its largest value; a force that is balanced away leaves its rounding."""
-    return f"{when}, up to {signals.number(largest if largest > ROUNDING else 0.0)}"
+    """Return the legend of a curve, with its largest value."""
+    return f"{when}, up to {signals.number(largest)}"
 
 
 def _legend(ax: Axes) -> None:

@@ -14,12 +14,18 @@ from linksweep.tables.table import Row, Table
 
 ROUNDING = 1e-12
 """Part of a size beside which less than this is rounding."""
+BALANCED = 100.0
+"""Sizes before balancing that what is left after is compared with: the roundings of several links add up."""
+
+
+def zero_of_rounding(value: float, beside: float) -> float:
+    """Return a value, 0 where it is only rounding beside another value."""
+    return 0.0 if abs(value) <= ROUNDING * beside < np.inf else value
 
 
 def without_rounding(value: float, beside: float) -> str:
     """Format a value with five digits: 0 where it is only rounding beside another value, "none" for NaN."""
-    rounding = abs(value) <= ROUNDING * beside < np.inf
-    return "none" if np.isnan(value) else f"{0.0 if rounding else value:.5g}"
+    return "none" if np.isnan(value) else f"{zero_of_rounding(value, beside):.5g}"
 
 
 def weight_table(weights: Iterable[Counterweight], system: UnitSystem) -> Table:
@@ -38,7 +44,7 @@ def balance_table(ds: xr.Dataset) -> Table:
     rows: list[Row] = []
     for name, values in ds.data_vars.items():
         before, after = (float(values.sel(balance=when)) for when in ("before", "after"))
-        rows.append((str(name), f"{before:.5g}", without_rounding(after, 100.0 * before), unit_of(values)))
+        rows.append((str(name), f"{before:.5g}", without_rounding(after, BALANCED * before), unit_of(values)))
     return Table(("quantity", "before", "after", "unit"), rows, right=(1, 2), meanings=meanings(ds))
 
 

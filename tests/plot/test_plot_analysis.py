@@ -217,6 +217,19 @@ def test_a_balanced_force_is_drawn_as_zero():
         assert frame.x0 < legend.x0 and legend.x1 < frame.x1
 
 
+@pytest.mark.parametrize("size", [1.0, 1e-15, 1e15], ids=["bench", "watch", "crane"])
+def test_rounding_is_what_is_small_beside_the_force_before(size):
+    """Forces of inertia are proportional to the density, and the balanced one is 0, however heavy the machine is."""
+    bars = [ls.Bar(length, 0.02, 0.02, 8000.0 * size) for length in (0.08, 0.22, 0.18)]
+    scene = ls.Scene(ls.FourBar(*bars, ground=0.2), omega2=30.0)
+    figure = ls.plot.balance(scene, ls.with_counterweights(scene, ls.counterweights(scene, radius=0.06)), theta2=90)
+    force, moment, *_ = ([text.get_text() for text in ax.get_legend().get_texts()] for ax in figure.axes)
+    bench = replace(scene, mechanism=ls.FourBar(*(replace(bar, density=8000.0) for bar in bars), ground=0.2))
+    largest = size * float(ls.peaks(bench, of=["Fs"]).Fs_peak)
+    assert force == [f"before, up to {signals.number(largest)}", "after, up to 0"]
+    assert not any(text.endswith("up to 0") for text in moment)
+
+
 @pytest.mark.parametrize("loads", [(), ls.example("press").loads], ids=["by inertia", "at the load"])
 def test_the_largest_moment_is_marked_between_the_sections(loads):
     scene = replace(ls.example("press"), loads=loads)
