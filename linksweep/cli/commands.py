@@ -147,13 +147,14 @@ def _balance(options: argparse.Namespace) -> None:
     drive = scene.mechanism.drives[scene.drive]
     pins = [f"{pin}_peak" for pin in scene.mechanism.pins]
     table = ls.compare(scene, balanced, of=[*(name.format(drive=drive) for name in BALANCED), *pins])
+    _require_whole(options.scene, table.to_array())
     print(f"{weight_table(weights, shown_units(scene.units))}\n")
     print_answer(table)
     show(options, lambda: ls.plot.balance(scene, balanced))
 
 
 def _require_whole(path: Path, values: xr.DataArray) -> None:
-    """Raise ValueError where a cycle has no result at some angle."""
+    """Raise ValueError where a cycle has no result at some angle, or grows without bound."""
     if values.isnull().any() or not (abs(values) < math.inf).all():
         raise ValueError(f"{path}: does not run all the way round at that speed; linksweep check tells where it ends")
 

@@ -12,9 +12,9 @@ from linksweep.plot.kit.colors import BLUE, VERMILION
 from linksweep.plot.kit.drawings import joints_of
 from linksweep.plot.kit.locus import draw_cross
 from linksweep.plot.kit.style import crank_angles, grid, panels
+from linksweep.plot.kit.with_peaks import marked_peaks, with_peaks
 from linksweep.results.compute import require_scene
 from linksweep.results.origin.in_shown_units import in_shown_units
-from linksweep.results.peaks import peaks
 from linksweep.results.sweep import sweep
 from linksweep.scene.scene import Scene
 from linksweep.scene.shown_units import shown_units
@@ -28,7 +28,7 @@ STYLES: dict[str, dict[str, Any]] = {
     "before": {"color": BLUE, "linewidth": 3.0, "alpha": 0.45},  # broad: seen where the other lies on it
     "after": {"color": VERMILION},
 }
-SHAKING = ("Fsx", "Fsy", "Ms")
+SHAKING = ("Fs", "Ms")
 
 
 def balance(before: Scene, after: Scene, *, theta2: int = 720) -> Figure:
@@ -69,8 +69,8 @@ def balance(before: Scene, after: Scene, *, theta2: int = 720) -> Figure:
     drive = before.mechanism.drives[before.drive]
     pins = drawing.pin_forces
     scenes = {"before": before, "after": after}
-    cycles = {name: _cycle(scene, theta2, [*SHAKING, drive, *pins]) for name, scene in scenes.items()}
-    largest = {name: _largest(scene, ["Fs", "Ms", drive, *pins]) for name, scene in scenes.items()}
+    cycles = {name: _cycle(scene, theta2, ["Fsx", "Fsy", "Ms", drive, *pins]) for name, scene in scenes.items()}
+    largest = {name: _largest(scene, [*SHAKING, drive, *pins]) for name, scene in scenes.items()}
     for name, size in largest["before"].items():
         largest["after"][name] = zero_of_rounding(largest["after"][name], BALANCED * size)
     unit = {name: str(item.attrs.get("units", "")) for name, item in cycles["before"].items()}
@@ -86,12 +86,12 @@ def balance(before: Scene, after: Scene, *, theta2: int = 720) -> Figure:
 
 
 def _cycle(scene: Scene, theta2: int, names: list[str]) -> xr.Dataset:
-    return in_shown_units(sweep(scene, theta2, of=names), shown_units(scene.units))
+    return with_peaks(sweep(scene, theta2, of=names), *SHAKING)
 
 
 def _largest(scene: Scene, names: list[str]) -> dict[str, float]:
     """Return the exact largest magnitude of each quantity in the cycle, in the unit in which it is shown."""
-    worst = in_shown_units(peaks(scene, of=names), shown_units(scene.units))
+    worst = in_shown_units(marked_peaks(scene, SHAKING, None), shown_units(scene.units))
     return {name: float(worst[f"{name}_peak"]) for name in names}
 
 

@@ -223,8 +223,8 @@ def test_a_partial_revolution_has_no_worst_angle_and_no_cycle(capsys):
     ls.save(ls.sweep(swing, theta2=36), "swing.nc")
     assert main(["breakdown", "swing.nc", "F32"]) == 2
     assert "F32: has no largest value" in capsys.readouterr().err
-    for word in ("flywheel", "orders"):
-        assert main([word, "swing.nc"]) == 2
+    for word, *options in (["flywheel"], ["orders"], ["balance", *RADIUS]):
+        assert main([word, "swing.nc", *options]) == 2
         assert "swing.nc: does not run all the way round" in capsys.readouterr().err
 
 

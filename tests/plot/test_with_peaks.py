@@ -249,3 +249,19 @@ def test_before_and_after_balancing_state_exact_peaks():
             peak = float(worst[f"{name}_peak"])
             balanced = when == "after" and name == "Fs"
             assert f"{when}, up to {number(0.0 if balanced else peak)}" in legend
+
+
+def test_curves_before_and_after_balancing_reach_the_largest_force():
+    """3000 N for a tenth of a degree, between all samples, on a crank without mass; half of it after."""
+    angles = np.union1d(np.arange(0.0, 361.0, 20.0), [200.2, 200.25, 200.3])
+    pulse = xr.DataArray(np.where(angles == 200.25, 3000.0, 0.0), {"theta2": angles}, "theta2")
+    light = ls.FourBar(*(ls.Link(length, 0.0, 0.0) for length in (0.08, 0.22, 0.18)), ground=0.2)
+    before, after = (
+        ls.Scene(light, 30.0, loads=[ls.Load("crank", force=(part * pulse, 0.0), interpolation="linear")])
+        for part in (1.0, 0.5)
+    )
+    pin = ls.plot.balance(before, after).axes[-1]
+    assert pin.get_title(loc="left") == "Load of pin A"
+    for when, largest in {"before, up to 3000": 3000.0, "after, up to 1500": 1500.0}.items():
+        (curve,) = [line.get_ydata() for line in pin.lines if line.get_label() == when]
+        assert curve.max() == pytest.approx(largest, rel=1e-9)

@@ -218,6 +218,31 @@ def test_sizes_before_and_after_are_over_time():
     np.testing.assert_allclose(result.T12_ripple, ripple, rtol=1e-9)
 
 
+def test_sizes_without_a_count_of_angles_are_exact():
+    """A triangle 0.1 degrees wide and 3000 N high, between two samples, on a crank without mass; then half of it."""
+    angles = np.union1d(np.arange(0.0, 361.0, 20.0), [200.2, 200.25, 200.3])
+    pulse = xr.DataArray(np.where(angles == 200.25, 3000.0, 0.0), {"theta2": angles}, "theta2")
+    before, after = (
+        ls.Scene(LIGHT, MEAN, loads=[ls.Load("crank", force=(part * pulse, 0.0), interpolation="linear")])
+        for part in (1.0, 0.5)
+    )
+    mean, square = 0.05 / 360.0, 0.1 / 3.0 / 360.0
+    sizes = ls.compare(before, after, of=["F12_peak", "F12_rms", "F12_ripple"])
+    for name, size in {"peak": 1.0, "rms": np.sqrt(square), "ripple": np.sqrt(square - mean**2)}.items():
+        np.testing.assert_allclose(sizes[f"F12_{name}"], [3000.0 * size, 1500.0 * size], rtol=1e-9)
+    sampled = ls.compare(before, after, of=["F12_peak"], theta2=720)
+    assert float(sampled.F12_peak.max()) < 1e-9  # at half degrees there is none
+
+
+def test_a_steady_torque_has_no_ripple_and_an_unbounded_one_has():
+    steady = ls.Scene(LIGHT, MEAN, loads=[ls.Load("crank", torque=-12.0)])
+    toggling = ls.Scene(ls.FourBar(*(ls.Bar(a, 0.02, 0.02, 7750.0) for a in (0.1, 0.12, 0.12)), ground=0.2), MEAN)
+    sizes = ls.compare(steady, toggling, of=["T12_peak", "T12_rms", "T12_ripple"])
+    assert float(ls.compare(toggling, toggling, of=["F12_ripple"]).F12_ripple.min()) == np.inf
+    np.testing.assert_allclose(sizes.to_array().sel(balance="before"), [12.0, 12.0, 0.0], rtol=1e-14)
+    assert np.isposinf(sizes.to_array().sel(balance="after")).all()
+
+
 def test_counterweights_are_best_over_time():
     """No other masses near the best ones have less: sizes as `compare` computes them."""
     scene = replace(PRESS, omega2=uneven)

@@ -68,7 +68,7 @@ def _with_samples(ds: xr.Dataset, more: tuple[str, ...]) -> xr.Dataset:
     ends = float(angles.min()), float(angles.min() + turn if turn else angles.max())
     part = None if ends[1] - ends[0] >= scene.period else ends
     known = tuple(name for name in more if name in scene.table.quantity)
-    worst, poles = _peaks(scene, known, part), _poles(scene, known)
+    worst, poles = marked_peaks(scene, known, part), _poles(scene, known)
     new = np.setdiff1d(_around(worst, poles, ends, scene.period), angles)
     names = [str(name) for name in ds.data_vars if name in scene.table.quantity]
     if not len(new) or not names:
@@ -134,7 +134,8 @@ def _equal(one: xr.Dataset, other: xr.Dataset) -> bool:
 
 
 @lru_cache(maxsize=8)
-def _peaks(scene: Scene, more: tuple[str, ...], part: Part | None) -> xr.Dataset:
+def marked_peaks(scene: Scene, more: tuple[str, ...], part: Part | None) -> xr.Dataset:
+    """Return the peaks at which a cycle, or a part of it, gets samples."""
     return peaks(scene, [*scene.mechanism.peak_quantities(scene.drive), *more], between=part)
 
 
