@@ -57,9 +57,11 @@ def _of_more(costs: np.ndarray) -> np.ndarray:
     """Return whether no row before it dominates each of different rows, in any number of columns.
 
     Each row of the front strikes out the rows after it that it dominates. The rows with the least sum of ranks come
-    first: they dominate the most, and no later row can dominate them. Rows are dropped a batch at a time.
+    first: they dominate the most, and no later row can dominate them, as equal costs rank in the order of their rows.
+    Rows are dropped a batch at a time.
     """
-    rows = np.argsort(np.argsort(np.argsort(costs, axis=0), axis=0).sum(axis=1), kind="stable")
+    ranks = np.argsort(np.argsort(costs, axis=0, kind="stable"), axis=0)
+    rows = np.argsort(ranks.sum(axis=1), kind="stable")
     best = np.zeros(len(rows), dtype=bool)
     while rows.size:
         after = np.ascontiguousarray(costs[rows].T)

@@ -30,6 +30,16 @@ def test_the_front_holds_the_designs_that_none_dominates(n, objectives):
         assert [tuple(row) for row in costs[chosen]] == sorted(tuple(row) for row in costs[chosen])
 
 
+@pytest.mark.parametrize("objectives", [3, 4])
+def test_the_front_of_designs_that_are_equal_in_some_objectives(objectives):
+    """In the last objective each is bought by the others, so that many are on the front."""
+    random = np.random.default_rng(objectives)
+    for n in range(10, 100):
+        costs = random.integers(0, 5, (n, objectives)).astype(float)
+        costs[:, -1] = random.integers(0, 3, n) - costs[:, :-1].sum(axis=1)
+        assert sorted(front(costs)) == np.flatnonzero(~dominated(costs)).tolist()
+
+
 def test_every_design_may_be_on_the_front():
     """On a circle and a sphere no point dominates another; on a line the first dominates all."""
     angle = np.linspace(0.1, 1.4, 500)

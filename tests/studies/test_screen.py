@@ -19,7 +19,7 @@ import linksweep as ls
 from linksweep.scene.designs.drawing import levels
 from linksweep.studies import screen as screen_module
 from linksweep.studies.screening import Screening
-from linksweep.studies.tally import best
+from linksweep.studies.tally import Tally, best
 
 LENGTHS = {"coupler.length": ("20 cm", "24 cm"), "rocker.length": ls.Normal(0.18, 2e-3), "crank.length": [0.07, 0.08]}
 N = 1500
@@ -158,6 +158,25 @@ def test_the_best_of_many_are_those_of_their_definition(objectives):
         front = np.flatnonzero(~np.array(dominated) & first) if objectives > 1 else []
         least = [sorted(range(300), key=lambda k: (column[k], k))[:5] for column in costs.T.tolist()]
         assert best(costs, 5).tolist() == sorted({*front, *np.ravel(least).tolist()})
+
+
+@pytest.mark.parametrize("objectives", [2, 3, 4])
+def test_the_best_do_not_depend_on_the_chunks(objectives):
+    """In the last objective each is bought by the others, so that many equal ones are on the front."""
+    rng, none = np.random.default_rng(objectives), np.zeros(0, dtype=int)
+    for n in range(20, 200, 4):
+        costs = rng.integers(0, 5, (n, objectives)).astype(float)
+        costs[:, -1] = rng.integers(0, 3, n) - costs[:, :-1].sum(axis=1)
+        dominated = [(np.all(costs <= row, axis=1) & np.any(costs < row, axis=1)).any() for row in costs]
+        first = [not (costs[:k] == row).all(axis=1).any() for k, row in enumerate(costs)]
+        least = [sorted(range(n), key=lambda k: (column[k], k))[:2] for column in costs.T.tolist()]
+        expected = sorted({*np.flatnonzero(~np.array(dominated) & first).tolist(), *np.ravel(least).tolist()})
+        for chunk in (n, 33, 5):
+            tally = Tally(none, none, none, none, np.empty((0, objectives)))
+            for start in range(0, n, chunk):
+                part = start + best(costs[start : start + chunk], 2)
+                tally = tally.plus(Tally(none, none, none, part, costs[part]), 2)
+            assert tally.numbers.tolist() == expected
 
 
 def test_designs_that_do_not_close_have_no_part_in_it():
