@@ -69,6 +69,13 @@ def test_one_objective_gives_the_best_design():
     assert float(ls.pareto(designs, maximize="F32_peak").F32_peak.item()) == float(designs.F32_peak.max())
 
 
+@pytest.mark.parametrize("dtype", [np.uint8, np.uint64, np.int8])
+def test_whole_numbers_are_maximized_as_numbers(dtype):
+    score = np.array([3, np.iinfo(dtype).min, 9, 5], dtype=dtype)
+    designs = study(n=4).assign(score=("design", score))
+    assert ls.pareto(designs, maximize="score").score.values.tolist() == [9]
+
+
 def test_designs_that_are_not_ok_or_not_finite_are_never_on_the_front():
     designs = study()
     order = designs.F32_peak.argsort().values

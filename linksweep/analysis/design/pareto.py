@@ -82,7 +82,7 @@ def _objectives(ds: xr.Dataset, minimize: list[str], maximize: list[str]) -> lis
     objectives = [("minimize", name) for name in minimize] + [("maximize", name) for name in maximize]
     refuse([] if objectives else ['minimize: is empty; give names of variables, as in ["F32_peak", "T12_peak"]'])
     refuse([problem for path, name in objectives for problem in variable_problems(ds, path, name, numbers="fiu")])
-    return [-ds[name] if path == "maximize" else ds[name] for path, name in objectives]
+    return [-ds[name].astype(float) if path == "maximize" else ds[name] for path, name in objectives]
 
 
 def variable_problems(ds: xr.Dataset, path: str, name: Any, numbers: str = "") -> list[str]:
