@@ -46,6 +46,8 @@ DRAWN = "toleranced_design"
 """Dim of the designs drawn from tolerances."""
 SIGMAS = 3.0
 """Limits of a normal distribution without any, in standard deviations."""
+NARROW = 1e-4
+"""Largest distance from the mean, in standard deviations, within which a normal distribution is even, to 1e-9."""
 Choice = Normal | Tolerance
 
 
@@ -176,7 +178,17 @@ def _choices(scene: Scene, tolerances: Any) -> dict[str, Choice]:
         if isinstance(choice, Normal) and choice.mean is not None
     ]
     refuse(centred)
+    refuse([line for path, choice in choices.items() for line in _values_problems(path, choice, own[path][1])])
     return choices
+
+
+def _values_problems(path: str, choice: Choice, kind: str) -> list[str]:
+    """Return the problem of a tolerance whose numbers cannot be drawn, whether designs are drawn or not."""
+    try:
+        choice.at(np.array([0.5]), kind)
+    except ValueError as error:
+        return [f"{path}: {error}"]
+    return []
 
 
 def _spread(choice: Choice, kind: str) -> Spread:
@@ -193,6 +205,8 @@ def _truncated(k: float) -> float:
     """Return the standard deviation of a standard normal distribution within ±k."""
     if not math.isfinite(k):
         return 1.0
+    if k < NARROW:
+        return k / math.sqrt(3.0)
     density, inside = math.exp(-0.5 * k * k) / math.sqrt(2.0 * math.pi), math.erf(k / math.sqrt(2.0))
     return math.sqrt(1.0 - 2.0 * k * density / inside)
 

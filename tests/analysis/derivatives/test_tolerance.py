@@ -1,6 +1,7 @@
 """Tolerance: published limits of ISO 286, closed forms of linear results, drawn designs beside."""
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -138,6 +139,32 @@ def test_designs_have_each_their_own():
 def test_refusals_name_the_parameter(made, words):
     with pytest.raises(ValueError, match=words):
         ls.tolerance(PRESS, made, of="F32_peak")
+
+
+@pytest.mark.parametrize(
+    ("made", "words"),
+    [
+        (ls.Normal(deviation=1e-4, within=0), "within = 0: must be greater than 0"),
+        (ls.Normal(deviation=1e-4, within=-1.0), "within = -1.0: must be greater than 0"),
+        (ls.Normal(deviation=1e-4, within="x"), "within = 'x': must be greater than 0"),
+        (ls.Normal(deviation=1e-4, within=None), "within = None: must be greater than 0"),
+        (ls.Normal(deviation=-1e-4), "deviation = -0.0001: must be greater than 0"),
+        (ls.Tolerance(5e-5, -5e-5), "Tolerance(5e-05, -5e-05): low must be less than high; swap them"),
+        (ls.Tolerance(0.0, 0.0), "Tolerance(0, 0): low must be less than high; give the scene itself a value"),
+    ],
+)
+@pytest.mark.parametrize("n", [0, 8])
+def test_tolerances_without_width_are_refused_whether_designs_are_drawn_or_not(made, words, n):
+    with pytest.raises(ValueError, match=f"^{re.escape(f'crank.length: {words}')}"):
+        ls.tolerance(PRESS, {"crank.length": made}, of="F32_peak", n=n)
+
+
+@pytest.mark.parametrize("within", [1e-9, 1e-6, 0.01])
+def test_a_narrow_part_of_a_normal_distribution_is_even(within):
+    """From -k to k the density is constant to k²/2, and the deviation k/√3 to k²/15."""
+    narrow = ls.tolerance(PRESS, {"ground": ls.Normal(deviation=1e-3, within=within)}, of="F32_peak", n=0)
+    even = ls.tolerance(PRESS, {"ground": ls.Tolerance(-1e-3 * within, 1e-3 * within)}, of="F32_peak", n=0)
+    assert float(narrow.F32_peak_sigma) == pytest.approx(float(even.F32_peak_sigma), rel=within**2 / 15 + 1e-11, abs=0)
 
 
 def test_an_angle_alone_does_not_say_which_of_its_extremes():
