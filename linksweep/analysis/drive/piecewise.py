@@ -110,7 +110,7 @@ def piecewise(group: Any, names: tuple[str, ...]) -> Piecewise:
     path, first = np.nonzero(paths.cuts[:, 1:] > paths.cuts[:, :-1])
     pieces = np.stack([paths.cuts[path, first], np.diff(paths.cuts, axis=1)[path, first]])
     done, scale, full = [], np.zeros((len(names), count)), np.bincount(path, minlength=count)
-    before = np.full((len(names), len(path)), np.inf)
+    before, noisy = np.full((len(names), len(path)), np.inf), np.zeros((len(names), count), dtype=bool)
     for halvings in range(HALVINGS + 1):
         values = _values(group, names, paths.row[path], pieces)
         # no matrix product: the order in which it sums, and so the last bit, depends on the number of pieces
@@ -121,7 +121,8 @@ def piecewise(group: Any, names: tuple[str, ...]) -> Piecewise:
         tail = np.abs(terms[..., -2:]).max(axis=-1)
         wide = tail * (pieces[1] / group.scene.period) > TOLERANCE * scale[:, path]
         if halvings >= FIRST_NOISE:
-            wide &= ~_noise(wide & (tail > NOISE * before), path, full * 2.0**halvings)
+            noisy |= _noise(wide & (tail > NOISE * before), path, full * 2.0**halvings)
+            wide &= ~noisy[:, path]
         halved = wide.any(axis=0) & (halvings < HALVINGS)
         halved &= (np.bincount(path, halved, len(full)) <= MOST)[path]
         done.append((path[~halved], pieces[:, ~halved], np.moveaxis(terms[:, ~halved], 1, -1)))
@@ -144,10 +145,9 @@ def _values(group: Any, names: tuple[str, ...], row: Array, pieces: Array) -> Ar
 
 
 def _noise(lasting: Array, path: Array, full: Array) -> Array:
-    """Return whether pieces belong to a quantity that is rounding noise, as a torque of 0: its last terms are `lasting`
+    """Return whether quantities (quantity, design) are rounding noise, as a torque of 0: their last terms are `lasting`
     over most of the cycle, which has as many pieces as are `full`."""
-    count = np.stack([np.bincount(path, each, len(full)) for each in lasting])
-    return (count > 0.5 * full)[:, path]
+    return np.stack([np.bincount(path, each, len(full)) for each in lasting]) > 0.5 * full
 
 
 def largest(curves: Piecewise, series: Array) -> tuple[Array, Place]:

@@ -7,6 +7,7 @@ import pytest
 import xarray as xr
 
 import linksweep as ls
+from linksweep.analysis.drive import piecewise
 from linksweep.analysis.drive.flywheel import flywheel_slopes
 from linksweep.analysis.drive.wittenbauer import NAMES, Turning
 from linksweep.results.peak_search.between import EVERYWHERE
@@ -178,3 +179,17 @@ def test_derivatives_by_differences(scene, path):
     first, before, after, last = ls.flywheel(replaced(scene, {path: moved}), fluctuation=0.02).flywheel_inertia.values
     expected = (8.0 * (after - before) - (last - first)) / (12.0 * 2e-3 * value)
     np.testing.assert_allclose(slopes[path], expected, rtol=2e-7)
+
+
+def test_a_slope_that_is_rounding_noise_is_not_followed_into_a_jump(monkeypatch):
+    """The inertia does not depend on the rocker's cg_angle; the torque's slope to the rate jumps with the twist."""
+    counts, values = [], piecewise._values
+    monkeypatch.setattr(piecewise, "_values", lambda *call: counts.append(len(call[2])) or values(*call))
+    links = ls.Link(0.08, 0.3, 2e-4, 0.03, 20.0), ls.Link(0.22, 0.8, 3e-3, 0.1, -15.0), ls.Link(0.18, 0.6, 2e-3, 0.08)
+    spring = ls.TorsionSpring("crank", "coupler", 2.0, 30.0)
+    scene = ls.Scene(ls.FourBar(*links, ground=0.2), 25.0, gravity=(1.0, -9.81), loads=[spring])
+    _, slopes = flywheel_slopes(scene, ("rocker.cg_angle", "loads[1].rate"), fluctuation=0.02)
+    assert max(counts) < 1000  # followed, they double to hundreds of thousands
+    rates = replaced(scene, {"loads[1].rate": xr.DataArray([1.999, 2.001], dims="rate")})
+    less, more = ls.flywheel(rates, fluctuation=0.02).flywheel_inertia.values
+    np.testing.assert_allclose(slopes["loads[1].rate"], (more - less) / 0.002, rtol=2e-7)
