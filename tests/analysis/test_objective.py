@@ -230,6 +230,16 @@ def test_an_optimum_under_a_constraint_lies_on_it(method):
     assert min(result.calls.values()) >= 2 and result.nit >= 2
 
 
+def test_a_search_ends_in_no_design_of_which_the_constraint_is_false():
+    """T12 falls with the crank, so that the least allowed one is best; the scene's own, 0.05 m, is not allowed."""
+    scene = ls.Scene(ls.SliderCrank(*links(0.05, 0.2), slider_mass=2.0), omega2=10.0)
+    large = {"minimize": "T12_rms", "constraint": lambda peaks: peaks["crank.length"] >= 0.06}
+    best = ls.objective(scene, {"crank.length": (0.02, 0.09)}, **large)
+    alone, several = best.optimum(), best.optimum(multistart=4)
+    assert not alone.allowed and best(alone.x) == math.inf
+    assert several.allowed and 0.06 <= several.x[0] <= several.start[0] and several.fun == best(several.x)
+
+
 ROD, SLIDER = ls.Link(0.2, mass=1.0, inertia=0.01, cg_distance=0.07), 2.0
 COUNTERWEIGHT = ls.Scene(ls.SliderCrank(ls.Link(0.05, 1.0, 0.01, 0.04, -60.0), ROD, slider_mass=SLIDER), omega2=30.0)
 TURNED = {"crank.cg_angle": (-150.0, 200.0), "crank.cg_distance": (0.01, 0.05)}

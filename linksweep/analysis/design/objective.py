@@ -208,7 +208,8 @@ class Objective:
             Method of ``scipy.optimize.minimize``: "SLSQP", or "trust-constr", which takes more calls.
         multistart : int or Dataset, default None
             Further starts besides the scene's own values, a search for each: a number of points within the ranges, or
-            the designs of a Dataset, such as the front of a study of these parameters.
+            the designs of a Dataset, such as the front of a study of these parameters. Where `constraint` is False of
+            the scene itself give some: it has no gradient that would lead to designs of which it is True.
         minimax : int, default 0
             Number of equal sectors of the cycle, such as 24, in each of which the largest value is held below a bound
             that is minimized: two equal peaks do not stop this search. 0 for the peak alone.

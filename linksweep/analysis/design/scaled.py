@@ -28,7 +28,7 @@ FAR = 1e6
 class Scaled:
     """An objective over scaled parameters, which counts its calls.
 
-    `whole` states whether designs must be those that `objective` itself allows, as the first one is: of status ok.
+    `whole` states whether designs must have the status ok, as the first one has.
     """
 
     objective: Objective
@@ -61,8 +61,7 @@ class Scaled:
         """Return the objective."""
         self.calls["value"] += 1
         x = self.own(z)
-        sound = not self.whole or np.isfinite(self.objective(x))
-        number = self.objective.plain_value(x) / self.size if sound else np.inf
+        number = self.objective.plain_value(x) / self.size if self._sound(x) else np.inf
         return number if np.isfinite(number) else FAR
 
     def gradient(self, z: np.ndarray) -> np.ndarray:
@@ -87,7 +86,7 @@ class Scaled:
 
     def allowed(self, x: np.ndarray, tolerance: float) -> bool:
         """Return whether a design satisfies all constraints, but for a tolerance relative to their bounds."""
-        if self.whole and not np.isfinite(self.objective(x)):
+        if not self._sound(x):
             return False
         excess = [
             (self.objective.function.value(name, x, worst) - bound)
@@ -96,6 +95,15 @@ class Scaled:
             for name, worst, bound in one_sided(self.objective.subject_to)
         ]
         return all(each >= -tolerance for each in excess)
+
+    def _sound(self, x: np.ndarray) -> bool:
+        """Return whether a design has the status that it must have, and `constraint` is true of it."""
+        constraint = self.objective.constraint
+        if not self.whole and constraint is None:
+            return True
+        peaks = self.objective.peaks(x[:, None])  # over a dim: one that cannot be assembled is no error then
+        ok = not self.whole or bool((peaks["status"] == 0).all())
+        return ok and (constraint is None or bool(np.all(constraint(peaks))))
 
     def _result(self, name: str, worst: str, unit: float, z: np.ndarray) -> Any:
         number = self.objective.function.value(name, self.own(z), worst) / unit

@@ -36,7 +36,7 @@ def local_optimum(objective: Objective, method: str, multistart: Any, minimax: i
     refuse(name_problems("method", method, OPTIONS))
     refuse(minimax_problems(objective) + count_problems("minimax", minimax) if minimax else [])
     starts = starts_of(objective, multistart)
-    whole = bool(np.isfinite(objective(starts[0])))
+    whole = bool((objective.peaks(starts[0][:, None])["status"] == 0).all())
     calls = {"value": 0, "gradient": 0}
     results = [_from_start(objective, start, method, minimax, whole, calls) for start in starts]
     sound = [result for result in results if result.allowed and np.isfinite(result.fun)]
