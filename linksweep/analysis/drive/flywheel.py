@@ -33,11 +33,12 @@ from linksweep.engine.trace.derivatives import derivative_of
 from linksweep.results.compute import require
 from linksweep.results.cylinders.multi_cylinder import MultiCylinder, one_cylinder
 from linksweep.results.dataset import with_units
+from linksweep.results.derivatives.of_integrals import known_jumps
 from linksweep.results.peak_search.between import EVERYWHERE
 from linksweep.results.peak_search.groups import assembled_groups, different, empty, empty_over_all
 from linksweep.results.sweep import sweep
 from linksweep.scene.derivatives.differentiated import Differentiated, differentiated
-from linksweep.scene.derivatives.sloped import Sloped, slopes_of, value_of
+from linksweep.scene.derivatives.sloped import slopes_of, value_of
 from linksweep.scene.dimensions import argument_problems
 from linksweep.scene.pairs import Array
 from linksweep.scene.scene import Scene
@@ -292,11 +293,11 @@ def _slopes(group: Any, own: Differentiated, names: tuple[str, ...], s: float) -
 def _moving_jumps(group: Any, own: Differentiated) -> list[MovingJump]:
     """Return the jumps of the torque that parameters move, in every turn of the cycle."""
     rows, jumps = np.arange(len(group.designs)), []
-    for jump in own.moving_jumps:
-        if isinstance(jump, Sloped):
-            moves = {path: np.radians(group.number(slope)) for path, slope in slopes_of(jump).items()}
-            for turn in np.arange(0.0, own.period, own.mechanism.period):
-                angle = group.number(value_of(jump)) + turn
-                before, after = (group.values(JUMPING, rows, angle + side) for side in (-BESIDE, BESIDE))
-                jumps.append(MovingJump(angle, before[0], after[0], before[1], moves))
+    for jump in known_jumps(own):
+        moves = {path: np.radians(group.number(slope)) for path, slope in slopes_of(jump).items()}
+        first = np.nan_to_num(group.number(value_of(jump)))  # of designs without it, where nothing moves it
+        for turn in np.arange(0.0, own.period, own.mechanism.period):
+            angle = first + turn
+            before, after = (group.values(JUMPING, rows, angle + side) for side in (-BESIDE, BESIDE))
+            jumps.append(MovingJump(angle, before[0], after[0], before[1], moves))
     return jumps

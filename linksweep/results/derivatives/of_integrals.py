@@ -15,6 +15,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.engine.trace.derivatives import derivative_of
+from linksweep.results.derivatives.half_turns import half_turns
 from linksweep.results.derivatives.samples import Pairs, pairs_over
 from linksweep.results.peak_search.quadrature import Integrand, integrals
 from linksweep.scene.derivatives.differentiated import Differentiated, differentiated
@@ -54,11 +55,17 @@ def integral_derivatives(scene: Scene, requests: Mapping[str, Integral], to: tup
             slopes = tuple(derivative_of(name, path) for name in integral.names)
             integrands[key, path] = Integrand((*integral.names, *slopes), partial(_known, integral.slope))
     total = {key: xr.DataArray(field.values, dims=field.dims) for key, field in integrals(own, integrands).items()}
+    moving = known_jumps(own)
     for key, integral in requests.items():
-        for path, jumped in _jumped(own, integral).items():
+        for path, jumped in _jumped(own, integral, moving).items():
             total[key, path] = total[key, path] + jumped
     values = {key: total[key, ""] for key in requests}
     return Integrated(values, {key: array for key, array in total.items() if key[1]})
+
+
+def known_jumps(scene: Differentiated) -> list[Sloped]:
+    """Return the crank angles [degree] at which forces jump, and which parameters move in a way that is known."""
+    return [*(jump for jump in scene.moving_jumps if isinstance(jump, Sloped)), *half_turns(scene)]
 
 
 def moving_unknown(scene: Scene, to: tuple[str, ...]) -> bool:
@@ -74,9 +81,8 @@ def _known(function: Callable[..., Array], *values: Array) -> Array:
     return np.where(np.isfinite(heights), heights, 0.0)
 
 
-def _jumped(scene: Differentiated, integral: Integral) -> dict[str, xr.DataArray]:
+def _jumped(scene: Differentiated, integral: Integral, moving: list[Sloped]) -> dict[str, xr.DataArray]:
     """Return what the jumps that parameters move add to the derivatives of an integral, by path."""
-    moving = [jump for jump in scene.moving_jumps if isinstance(jump, Sloped)]
     if not moving:
         return {}
     pairs = pairs_over(scene, tuple(scene.at_one_angle.inputs.sizes))
