@@ -259,7 +259,7 @@ def flywheel_slopes(
     own = differentiated(replace(scene, alpha2=0.0), NAMES[:2], paths)
     names = tuple(derivative_of(name, path) for path in paths for name in NAMES[:2])
     fields = {path: empty_over_all(own, (*NAMES, *names)) for path in paths}
-    for _, group in assembled_groups(own, different(own, (*NAMES, *names)), (EVERYWHERE,)):
+    for _, group in assembled_groups(own, different(own, (*NAMES, *names)), (EVERYWHERE,)) if paths else ():
         slopes = _slopes(group, own, names, 0.5 * fluctuation)
         for path, field in fields.items():
             field.values[tuple(group.places[dim] for dim in field.dims)] = (

@@ -219,3 +219,11 @@ def test_a_fluctuation_is_a_text_too():
     press, of = ls.example("press"), ["flywheel_inertia"]
     text, number = (ls.sensitivities(press, of, to=["ground"], fluctuation=each) for each in ("5 %", 0.05))
     assert text.identical(number)
+
+
+def test_the_flywheel_does_not_depend_on_alpha2():
+    """It is that of the mean speed, whether another parameter is asked for or none."""
+    press = ls.example("press")
+    alone, beside = (ls.sensitivities(press, of="flywheel_inertia", to=to) for to in (["alpha2"], ["ground", "alpha2"]))
+    assert alone.flywheel_inertia_derivative.values.tolist() == [0.0] and alone.flywheel_inertia_status == 0
+    assert beside.flywheel_inertia_derivative.sel(parameter="alpha2") == 0.0
