@@ -31,6 +31,7 @@ from linksweep.engine.run import Field
 from linksweep.engine.trace.derivatives import derivative_of
 from linksweep.results.derivatives.samples import Pairs, pairs_over
 from linksweep.results.peak_search.along_paths import on_own_side
+from linksweep.results.peak_search.paths import ASIDE
 from linksweep.results.peak_search.rises import at_arc_ends, equal_rises
 from linksweep.scene.derivatives.differentiated import ANGLE, differentiated
 from linksweep.scene.derivatives.sloped import Sloped, slopes_of, value_of
@@ -93,7 +94,7 @@ def peak_derivatives(
     at, peak = pairs.numbers(angle), pairs.numbers(value)
     slopes, known = rise_derivatives(pairs, name, to, at, peak)
     status = np.where(known, OK, JUMP)
-    corners = _corners(pairs, name, to, at, peak, largest, slopes)
+    corners = _corners(pairs, name, to, at, peak, largest, slopes) | _across_seams(pairs, name, to, at, peak, slopes)
     status = np.where(corners.any(axis=0), TIE, status)
     at_ends = at_arc_ends(own.plain, pairs.designs, at, 10.0 * BESIDE)
     status = np.where(at_ends | np.isnan(slopes).any(axis=0), ARC_END, status)  # or a load's position counts from there
@@ -207,4 +208,18 @@ def _corners(
         for k, path in enumerate(to):
             apart = unlike(rivals[k], slopes[k, row], peak[row], _over(pairs, size_of(*pairs.scene.numbers[path]))[row])
             corners[k, row[apart | ~known]] = True
+    return corners
+
+
+def _across_seams(pairs: Pairs, name: str, to: tuple[str, ...], angles: Array, peak: Array, slopes: Array) -> Array:
+    """Return for which parameters (parameter, design) a side of a seam at the peak is as high, and changes
+    differently."""
+    scene, corners = pairs.scene, np.zeros(slopes.shape, dtype=bool)
+    for seam in scene.mechanism.seams(scene.profile):
+        for side in (-ASIDE, ASIDE):
+            place = np.where(_near(angles, seam, scene.period), np.mod(seam + side, scene.period), np.nan)
+            height, *others = pairs.at((name, *(derivative_of(name, path) for path in to)), place)
+            equal = np.abs(height - peak) <= EQUAL * np.abs(peak)
+            for corner, path, own, other in zip(corners, to, slopes, others, strict=True):
+                corner |= equal & unlike(other, own, peak, _over(pairs, size_of(*scene.numbers[path])))
     return corners

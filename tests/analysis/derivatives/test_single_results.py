@@ -221,6 +221,16 @@ def test_a_fluctuation_is_a_text_too():
     assert text.identical(number)
 
 
+@pytest.mark.parametrize(("thrust", "slope", "status"), [(-1.0, 0.0, 0), (0.0, np.nan, 1), (1.0, 4.0 * np.pi, 0)])
+def test_a_car_without_thrust_is_as_heavy_at_both_ends_of_its_lap(thrust, slope, status):
+    """At the bottom N = m v²/r + m g, of the first speed where a lap begins and 2·2π·thrust more where it ends."""
+    car = ls.Scene(ls.LoopTrack(12.0, 300.0), speed=26.0, thrust=thrust, gravity=(0.0, -9.81), profile="energy")
+    ds = ls.sensitivities(car, of="normal_force_peak", to=["thrust", "speed"])
+    expected = [slope, 2.0 * 300.0 * 26.0 / 12.0]
+    assert ds.normal_force_peak_derivative.values == pytest.approx(expected, rel=1e-9, abs=1e-9, nan_ok=True)
+    assert ds.normal_force_peak_status == status
+
+
 def test_the_flywheel_does_not_depend_on_alpha2():
     """It is that of the mean speed, whether another parameter is asked for or none."""
     press = ls.example("press")
