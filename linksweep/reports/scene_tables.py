@@ -22,9 +22,11 @@ from linksweep.base.fields import (
     has_fields,
     left_out,
 )
+from linksweep.base.frozen import with_sound
 from linksweep.base.records import NamedField
 from linksweep.mechanisms.links import Bar, Disk, Guide
 from linksweep.mechanisms.machine import Machine
+from linksweep.plot.kit.with_peaks import ASIDE
 from linksweep.reports.markup import Markup, symbol, table, with_unit, written
 from linksweep.reports.units_of_page import unit_of_input
 from linksweep.scene.loads.ends import GROUND
@@ -39,7 +41,7 @@ LEFT_OUT = ("length", "angle")
 TITLES = {"ground": "ground pin", "points": "pin", "guides": "guide", "branch": "branch of", "gears": "gears of"}
 """Titles of the rows of a linkage's named numbers, by parameter."""
 
-SAMPLES = 720  # angles for numbers that change over the revolution
+SAMPLES = 720  # even angles for numbers that change over the revolution
 
 
 def kind_of(scene: Scene) -> str:
@@ -67,18 +69,23 @@ def loads(scene: Scene) -> Markup:
 
 def settings(scene: Scene) -> Markup:
     """Return the table of the mechanism's other parameters, its drive, its speed and gravity."""
-    system = shown_units(scene.units)
+    sampled, system = _sampled(scene), shown_units(scene.units)
     rows = [
-        *_of_mechanism(_sampled(scene).mechanism, system),
-        *_of_motion(_sampled(scene), system),
+        *_of_mechanism(sampled.mechanism, system),
+        *_of_motion(sampled, system),
         ("gravity", _gravity(scene.gravity, system)),
     ]
     return table((), rows, class_="settings")
 
 
 def _sampled(scene: Scene) -> Scene:
-    """Return the scene with arrays and functions over the angle at `SAMPLES` angles."""
-    return scene.at(scene.grid(SAMPLES))
+    """Return the scene with all that changes over the angle at `SAMPLES` angles, and where loads are quick or jump."""
+    own = [array["theta2"].values for array in scene.arrays.values() if "theta2" in array.coords]
+    quick = with_sound(scene, omega2=1.0, alpha2=0.0).quick.angles  # a speed is refused where it jumps
+    jumps = np.array(scene.jumps(), dtype=float)
+    beside = np.add.outer(jumps[np.isfinite(jumps)], [-ASIDE, 0.0, ASIDE]).ravel()
+    angles = np.concatenate([scene.grid(SAMPLES).angles, *own, quick, beside])
+    return scene.at(scene.grid(np.unique(angles)))
 
 
 def _link(mechanism: Any, role: str, number: int, system: UnitSystem) -> tuple[str, ...]:
