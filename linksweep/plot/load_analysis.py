@@ -8,17 +8,21 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
+from linksweep.analysis.pins.breakdown import breakdown as breakdown_of
 from linksweep.analysis.pins.speed_limit import LIMITS, speed_limit
 from linksweep.base.checked_number import one_number
 from linksweep.base.conversion import all_to_float64
 from linksweep.base.validate import name_problems, quote, refuse
+from linksweep.files.netcdf import scene_of
 from linksweep.plot.curves import shade_gaps
 from linksweep.plot.kit import signals
 from linksweep.plot.kit.colors import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION
 from linksweep.plot.kit.style import axes_or_new, crank_angles, grid
+from linksweep.plot.kit.with_peaks import between, with_peaks
 from linksweep.results.compute import requested_one, require, require_results
 from linksweep.results.origin.in_shown_units import results_in_shown_units
 from linksweep.results.peaks import peaks
+from linksweep.scene.changes import angles_of_changes
 from linksweep.scene.scene import Scene
 from linksweep.scene.shown_units import UnitSystem, shown_units
 
@@ -64,9 +68,9 @@ def breakdown(ds: xr.Dataset, of: str | None = None, *, ax: Axes | None = None) 
     refuse([] if known else ["ds has no sources: take what ls.breakdown returns"])
     of = known[0] if of is None else signals.force_named(ds, of)
     refuse(name_problems("of", of, known))
-    ds = results_in_shown_units(ds)
     signals.require_one_design([ds[of].isel(source=0)])
     signals.require_angles(ds)
+    ds = results_in_shown_units(_with_peaks(ds, of))
     ax = grid(axes_or_new(ax))
     rows = [(str(s), signals.revolution(ds, ds[of].sel(source=s))) for s in ds["source"].values]
     rows = [(source, row) for source, row in rows if np.nanmax(np.abs(row[1]), initial=0.0) > 0.0]
@@ -86,6 +90,21 @@ def breakdown(ds: xr.Dataset, of: str | None = None, *, ax: Axes | None = None) 
     ax.set_ylabel(f"share in {signals.symbol(of) or of} [{signals.unit(ds[of], 'N')}]")
     ax.legend(fontsize="small", frameon=False, loc="center left", bbox_to_anchor=(1.0, 0.5))
     return ax
+
+
+def _with_peaks(ds: xr.Dataset, of: str) -> xr.Dataset:
+    """Return a breakdown with samples at the exact peaks of its sum, and where loads change.
+
+    To one that was altered, or whose sum is unbounded, no samples are added.
+    """
+    whole = ds[["status"]].assign({of: ds[of].sum("source", skipna=False, keep_attrs=True)})
+    more = with_peaks(whole, of)
+    if signals.WHOLE_TURN not in more.attrs or np.isinf(more[of]).any():
+        return ds
+    scene, angles, turn = scene_of(ds), more[signals.INDEX].values, more.attrs[signals.WHOLE_TURN]
+    ends = angles[0], angles[0] + turn if turn else angles[-1]
+    angles = np.union1d(angles, between(angles_of_changes(scene), ends, scene.period))
+    return breakdown_of(scene, of, theta2=angles).assign_attrs({signals.WHOLE_TURN: turn})
 
 
 def _usual_size(ax: Axes, angles: np.ndarray, whole: np.ndarray, stacks: dict[float, np.ndarray]) -> None:

@@ -22,13 +22,12 @@ from linksweep.base.fields import (
     has_fields,
     left_out,
 )
-from linksweep.base.frozen import with_sound
 from linksweep.base.records import NamedField
 from linksweep.mechanisms.links import Bar, Disk, Guide
 from linksweep.mechanisms.machine import Machine
-from linksweep.plot.kit.with_peaks import ASIDE
 from linksweep.reports.markup import Markup, symbol, table, with_unit, written
 from linksweep.reports.units_of_page import unit_of_input
+from linksweep.scene.changes import angles_of_changes
 from linksweep.scene.loads.ends import GROUND
 from linksweep.scene.loads.load import Load
 from linksweep.scene.loads.springs import EndField
@@ -79,13 +78,8 @@ def settings(scene: Scene) -> Markup:
 
 
 def _sampled(scene: Scene) -> Scene:
-    """Return the scene with all that changes over the angle at `SAMPLES` angles, and where loads are quick or jump."""
-    own = [array["theta2"].values for array in scene.arrays.values() if "theta2" in array.coords]
-    quick = with_sound(scene, omega2=1.0, alpha2=0.0).quick.angles  # a speed is refused where it jumps
-    jumps = np.array(scene.jumps(), dtype=float)
-    beside = np.add.outer(jumps[np.isfinite(jumps)], [-ASIDE, 0.0, ASIDE]).ravel()
-    angles = np.concatenate([scene.grid(SAMPLES).angles, *own, quick, beside])
-    return scene.at(scene.grid(np.unique(angles)))
+    """Return the scene with all that changes over the angle at `SAMPLES` angles, and where arrays and loads change."""
+    return scene.at(scene.grid(np.union1d(scene.grid(SAMPLES).angles, angles_of_changes(scene))))
 
 
 def _link(mechanism: Any, role: str, number: int, system: UnitSystem) -> tuple[str, ...]:

@@ -80,10 +80,10 @@ def share_parts(ds: xr.Dataset) -> Iterator[Part]:
             shares = ds[name].broadcast_like(ds["theta2"])
             size = np.abs(shares.sum("source", skipna=False).values)
             if not np.isnan(size).all():
-                yield _share_table(shares.isel(theta2=int(np.nanargmax(size))))
+                yield _share_table(shares.isel(theta2=int(np.nanargmax(size))), size.size)
 
 
-def _share_table(shares: xr.DataArray) -> Table:
+def _share_table(shares: xr.DataArray, count: int) -> Table:
     values, name = shares.values, str(shares.name)
     whole, size = float(values.sum()), float(np.abs(values).max()) or 1.0
     order = np.argsort(-np.abs(values), kind="stable")
@@ -92,5 +92,7 @@ def _share_table(shares: xr.DataArray) -> Table:
     for source, share in {**sources, "all together": whole}.items():
         part = f"{100.0 * share / whole:.1f} %" if abs(whole) > 1e-9 * size else ""
         rows.append((source, f"{share:.5g}", part))
-    header = (f"{name} at theta2 = {float(shares.theta2):.2f}°", f"share [{unit_of(shares)}]", "of the whole")
+    of_samples = f", largest of {count} samples" if count > 1 else ""
+    title = f"{name} at theta2 = {float(shares.theta2):.2f}°{of_samples}"
+    header = (title, f"share [{unit_of(shares)}]", "of the whole")
     return Table(header, rows, right=(1, 2))

@@ -265,3 +265,37 @@ def test_curves_before_and_after_balancing_reach_the_largest_force():
     for when, largest in {"before, up to 3000": 3000.0, "after, up to 1500": 1500.0}.items():
         (curve,) = [line.get_ydata() for line in pin.lines if line.get_label() == when]
         assert curve.max() == pytest.approx(largest, rel=1e-9)
+
+
+def pulse(size: float) -> xr.DataArray:
+    """Return an array over theta2 that is 0 but between 200.1 and 200.4 degrees."""
+    angles = np.array([0.0, 90.0, 180.0, 200.1, 200.2, 200.3, 200.4, 270.0])
+    return xr.DataArray(np.where(np.abs(angles - 200.25) < 0.1, size, 0.0), {"theta2": angles}, "theta2")
+
+
+def with_load(**load) -> ls.Scene:
+    press = ls.example("press")
+    return replace(press, loads=[*press.loads, ls.Load(**load, interpolation="linear")])
+
+
+@pytest.mark.parametrize(("of", "theta2"), [("F32", 72), ("T12", 72), ("F32", np.linspace(150.0, 250.0, 21))])
+def test_a_breakdown_reaches_the_exact_peak(of, theta2):
+    scene = with_load(link="coupler", force=(0.0, pulse(-3000.0)), at=(0.1, 15.0))
+    ax = ls.breakdown(scene, of, theta2=theta2).linksweep.breakdown()
+    (whole,) = (line.get_xydata() for line in ax.lines if line.get_label() == "sum")
+    assert np.abs(whole[:, 1]).max() == pytest.approx(float(ls.peaks(scene, of=[of])[f"{of}_peak"]), rel=1e-9)
+    assert "load3 (coupler)" in [text.get_text() for text in ax.get_legend().get_texts()]
+    assert tuple(whole[[0, -1], 0]) == ((0.0, 360.0) if isinstance(theta2, int) else (150.0, 250.0))
+
+
+def test_a_breakdown_shows_a_load_that_is_narrow_away_from_the_peak():
+    scene = with_load(link="rocker", torque=pulse(5.0))
+    assert abs(float(ls.peaks(scene, of=["F43"]).F43_peak_at) - 200.25) > 90.0
+    ax = ls.breakdown(scene, "F43", theta2=72).linksweep.breakdown()
+    assert "load3 (rocker)" in [text.get_text() for text in ax.get_legend().get_texts()]
+
+
+def test_a_part_of_a_breakdown_is_drawn_as_it_is():
+    shares = ls.breakdown(ls.example("press"), "F32", theta2=72).isel(source=slice(0, 2))
+    (whole,) = (line for line in shares.linksweep.breakdown().lines if line.get_label() == "sum")
+    np.testing.assert_array_equal(whole.get_ydata()[:-1], shares.F32.sum("source"))

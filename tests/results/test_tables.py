@@ -94,6 +94,13 @@ def test_a_part_of_a_result_has_the_table_of_any():
     assert repr(ls.peaks(PRESS)[["status"]].linksweep) == "status:  ok"
 
 
+def test_a_breakdown_of_samples_says_that_its_angle_is_one_of_them():
+    press = ls.example("press")
+    samples, exact = (str(ls.breakdown(press, "F32", theta2=theta2).linksweep) for theta2 in (720, [300.2727]))
+    assert "F32 at theta2 = 300.50°, largest of 720 samples" in samples
+    assert "F32 at theta2 = 300.27°  share" in exact
+
+
 def test_a_sampled_study_names_its_best_and_worst():
     study = ls.peaks(ls.sample(PRESS, {"omega2": (20.0, 30.0)}, n=8), of=["F32"])
     text = repr(study.linksweep)

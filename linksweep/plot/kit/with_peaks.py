@@ -23,11 +23,10 @@ from linksweep.results.peak_search.paths import Part
 from linksweep.results.peak_search.singular.poles import poles_of_one_design
 from linksweep.results.peaks import peaks
 from linksweep.results.sweep import sweep
+from linksweep.scene.changes import ASIDE
 from linksweep.scene.designs.choose import design_labels
 from linksweep.scene.scene import Scene
 
-ASIDE = 1e-7
-"""Distance from a peak [degree] at which its one-sided limit agrees in all digits that a plot prints."""
 EQUAL = 1e-9
 """Largest difference between a sample and its scene's value, relative to the signal's largest; an altered one has
 more."""
@@ -120,8 +119,12 @@ def _around(worst: xr.Dataset, poles: list[Pole], ends: Part, period: float) -> 
     with the first."""
     names = [str(name) for name in worst.data_vars if str(name).endswith("_at")]
     at = np.array([*(float(worst[name]) for name in names), *(pole.angle for pole in poles)])
-    around = (at[np.isfinite(at), None] + np.array([-ASIDE, 0.0, ASIDE])).ravel()
-    away = np.mod(around - ends[0], period)
+    return between((at[np.isfinite(at), None] + np.array([-ASIDE, 0.0, ASIDE])).ravel(), ends, period)
+
+
+def between(angles: np.ndarray, ends: Part, period: float) -> np.ndarray:
+    """Return those angles [degree] that lie between two ends, in the period that begins with the first."""
+    away = np.mod(angles - ends[0], period)
     return ends[0] + away[away <= ends[1] - ends[0]]
 
 
