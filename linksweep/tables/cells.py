@@ -66,11 +66,14 @@ def at(values: xr.DataArray, place: Mapping[Any, int]) -> float:
 
 
 def place_of_worst(values: xr.DataArray) -> Mapping[Any, int]:
-    """Return the place of the largest value of a maximum, the least of a minimum, the largest magnitude of all else."""
+    """Return the place of the largest value of a maximum, the least of a minimum, the largest magnitude of all else.
+
+    Infinity is the worst of all; there must be a number.
+    """
     name = str(values.name)
     size = values.values  # in numpy: xarray's arithmetic would import dask
     size = size if name.endswith("_max") else -size if name.endswith("_min") else np.abs(size)
-    place = np.unravel_index(np.argmax(np.where(np.isfinite(size), size, -np.inf)), size.shape)
+    place = np.unravel_index(np.nanargmax(size), size.shape)
     return dict(zip(values.dims, map(int, place), strict=True))
 
 

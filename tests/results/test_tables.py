@@ -205,6 +205,18 @@ def test_every_machine_is_checked_in_the_same_words():
         assert titles["toggles at theta2"] == "none"
 
 
+def test_the_worst_of_designs_is_one_whose_force_is_unbounded():
+    """The crank meets toggles where the shortest and the longest link are longer than the others together."""
+    lengths = [0.2, 0.09, 0.24]
+    (rocking,) = (coupler for coupler in lengths if coupler + 0.18 < 0.08 + 0.2)
+    rows = cells(repr(ls.peaks(ls.grid(PRESS, {"coupler.length": lengths}), of=["F32", "T12"]).linksweep))
+    worst = {name: (value, rest[-1]) for name, value, *rest in rows[1:4]}
+    values = {"F32_peak": "inf", "T12_max": "inf", "T12_min": "-inf"}
+    assert worst == {name: (value, f"{rocking}") for name, value in values.items()}
+    best = next(row for row in rows[4:] if row[0] == "F32_peak")
+    assert np.isfinite(float(best[1])) and best[-1] in ("0.2", "0.24")
+
+
 def test_the_best_transmission_angle_is_the_largest_of_the_least():
     """The least angle is that of the crank in line with the ground, by the law of cosines."""
     lengths = [0.18, 0.2, 0.22]

@@ -173,7 +173,7 @@ def test_the_command_prints_the_worst_and_the_best(folder, capsys):
     expected = ls.peaks(ls.load_scene("scene.toml"), ["F32", "T12", "By"])
     assert_same(ls.open_study("study.nc").load(), expected)
     worst, best = (re.findall(r"^F32_peak .*$", out, re.MULTILINE)[k].split() for k in (0, 1))
-    assert worst[1] == f"{float(expected.F32_peak.where(np.isfinite).max()):.6g}"
+    assert worst[1] == f"{float(expected.F32_peak.max()):.6g}" == "inf"  # of 30 designs
     least = expected.F32_peak.where(expected.status == 0)
     place = least.argmin(["a", "speed"])
     assert best[1:] == [f"{float(least.min()):.6g}", "N", *(f"{float(least[place][d]):.6g}" for d in expected.sizes)]
