@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from linksweep.chains.rows.beams import SECTION
 from linksweep.mechanisms import Mechanism
 from linksweep.results.peaks import quantity_of
 from linksweep.tables.cells import at, counts_of_words, digits, label, meanings, place_of_worst, plain_unit
@@ -22,7 +23,8 @@ ANGLE, SIGNED = "transmission_angle", "_signed"
 def peak_parts(ds: xr.Dataset, machine: type[Mechanism] | Mechanism) -> Iterator[Part]:
     """Yield the table of peaks: quantity, value, unit, angle; of a batch, the worst design of each; and remarks."""
     names = [str(name) for name in ds.data_vars if f"{name}_at" in ds or str(name).endswith(("_mean", "_rms"))]
-    header = ("quantity", "value", "unit", f"at {machine.index}", *(f"worst {dim}" for dim in ds.sizes))
+    places = (f"at {dim}" if dim == SECTION else f"worst {dim}" for dim in ds.sizes)
+    header = ("quantity", "value", "unit", f"at {machine.index}", *places)
     yield Table(header, [_row(ds, name) for name in names], meanings=meanings(ds))
     yield "\n".join(_remarks(ds, machine))
 
@@ -30,18 +32,21 @@ def peak_parts(ds: xr.Dataset, machine: type[Mechanism] | Mechanism) -> Iterator
 def study_parts(ds: xr.Dataset, machine: type[Mechanism] | Mechanism) -> Iterator[Part]:
     """Yield the tables of a study: the worst and the best design of each peak, the designs of the largest transmission
     angles, and the number of designs by status."""
+    if SECTION in ds.status.dims:
+        ds = ds.assign(status=ds.status.max(SECTION, keep_attrs=True))
     yield from peak_parts(ds, machine)
-    if not ds.sizes:
+    sizes = {dim: n for dim, n in ds.sizes.items() if dim != SECTION}
+    if not sizes:
         return
     names = [str(name) for name in ds.data_vars if SIGNED not in str(name)]
     angles = [name for name in names if name.startswith(ANGLE) and name.endswith("_min")]
     peaks = [name for name in names if name.endswith("_peak") and not name.startswith(ANGLE)]
     for title, each, sign in (("least peak", peaks, 1.0), ("largest", angles, -1.0)):
         rows = [_best(ds, name, sign) for name in each]
-        header = ("quantity", title, "unit", *(f"best {dim}" for dim in ds.sizes))
+        header = ("quantity", title, "unit", *(f"best {dim}" for dim in sizes))
         yield Table(header, [*filter(None, rows)], meanings=meanings(ds))
-    shape = ", ".join(f"{dim} {n}" for dim, n in ds.sizes.items())
-    designs = prod(ds.sizes.values())
+    shape = ", ".join(f"{dim} {n}" for dim, n in sizes.items())
+    designs = prod(sizes.values())
     shared = designs // (ds.status.size or 1)
     counts_text = ", ".join(f"{word} {n * shared}" for word, n in counts_of_words(ds.status).items())
     yield f"designs: {designs} ({shape}): {counts_text or 'none'}"
@@ -88,12 +93,13 @@ def _at_an_end(ds: xr.Dataset, name: str) -> bool:
 
 
 def _best(ds: xr.Dataset, name: str, sign: float) -> Row:
-    """Return a result where it is least, with sign −1 largest, of the designs that are ok all the way round; empty
-    where there is none."""
+    """Return a result where it is least, with sign −1 largest, of the designs that are ok all the way round, along a
+    link its largest; empty where there is none."""
     values = sign * ds[name].where(ds.status == 0)
+    values = values.max(SECTION) if SECTION in values.dims else values
     size = values.where(np.isfinite(values), np.inf)
     if not np.isfinite(size).any():
         return ()
     place = size.argmin(...)
-    labels = (label(ds, dim, place.get(dim)) for dim in ds.sizes)
+    labels = (label(ds, dim, place.get(dim)) for dim in ds.sizes if dim != SECTION)
     return name, digits(sign * float(size.min())), plain_unit(ds[name]), *labels

@@ -217,6 +217,28 @@ def test_the_worst_of_designs_is_one_whose_force_is_unbounded():
     assert np.isfinite(float(best[1])) and best[-1] in ("0.2", "0.24")
 
 
+def test_places_along_a_link_are_no_designs():
+    lengths = [0.2, 0.22]
+    moments = [
+        ls.sweep(replace(PRESS, mechanism=replace(PRESS.mechanism, coupler=bar)), 3600, of=["bending_moment3"])
+        for bar in (ls.Bar(length, 0.02, 0.02, 7750.0) for length in lengths)
+    ]
+    largest = [float(ds.bending_moment3.max()) for ds in moments]
+    table = repr(ls.peaks(PRESS, of=["bending_moment3"]).linksweep)
+    header, row = cells(table)[:2]
+    assert header == ["quantity", "value", "unit", "at theta2", "at section"]
+    assert float(row[1]) == pytest.approx(largest[1], rel=1e-5)
+    assert row[-1] == f"{float(moments[1].bending_moment3.max('theta2').idxmax()):g}"
+    assert "best" not in table and "designs" not in table
+    table = repr(ls.peaks(ls.grid(PRESS, {"coupler.length": lengths}), of=["bending_moment3"]).linksweep)
+    least = next(row for row in cells(table) if row[0] == "bending_moment3_peak")
+    assert float(least[1]) == pytest.approx(min(largest), rel=1e-5)
+    assert least[-1] == f"{lengths[int(np.argmin(largest))]}"
+    assert table.splitlines()[-1] == "designs: 2 (coupler.length 2): ok 2"
+    short = replace(PRESS, mechanism=replace(PRESS.mechanism, coupler=ls.Bar(0.09, 0.02, 0.02, 7750.0)))
+    assert "Some quantity grows without bound" in repr(ls.peaks(short, of=["bending_moment3"]).linksweep)
+
+
 def test_the_best_transmission_angle_is_the_largest_of_the_least():
     """The least angle is that of the crank in line with the ground, by the law of cosines."""
     lengths = [0.18, 0.2, 0.22]
