@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from textwrap import fill
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
@@ -19,6 +20,7 @@ from linksweep.results.compute import require_results
 from linksweep.results.origin.in_shown_units import results_in_shown_units, units_of
 from linksweep.results.sweep import sweep
 from linksweep.scene.shown_units import UnitSystem
+from linksweep.tables.of_runs import failure_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -321,7 +323,7 @@ def run_up(ds: xr.Dataset, *, ax: Axes | None = None) -> Axes:
     Returns
     -------
     matplotlib Axes
-        Axes of the speed; those of the torque share its time.
+        Axes of the speed; those of the torque share its time. A run that comes to nothing says so there.
 
     Raises
     ------
@@ -347,13 +349,18 @@ def run_up(ds: xr.Dataset, *, ax: Axes | None = None) -> Axes:
         ax.axhline(system.value(usual, "rad/s"), color=GREY, linestyle="--", linewidth=1.0, label="operating point")
     ax.set(xlabel="time [s]", ylabel=f"crank speed $\\omega_2$ [{system.unit('rad/s')}]")
     ax.margins(x=0.0)
-    lines = ax.get_lines()
+    lines, beside = ax.get_lines(), ax
     if torque is not None:
         beside = ax.twinx()
         row = system.value(torque, "N m")  # of turning backwards, it may lie on the speed
         lines += beside.plot(time, row, "-.", color=VERMILION, linewidth=1.2, label="motor torque")
         beside.set_ylabel(f"motor torque [{system.unit('N m')}]")
-    legend_above(ax, handles=lines, ncols=3)
+    if len(time) > 1:
+        legend_above(ax, handles=lines, ncols=3)
+    if "status" in ds and (failure := failure_of(ds)):
+        box = {"facecolor": ax.get_facecolor(), "linewidth": 0.0, "alpha": 0.8}
+        middle: dict[str, Any] = {"ha": "center", "va": "center", "transform": ax.transAxes, "bbox": box}
+        beside.text(0.5, 0.5, fill(failure, 50), fontsize="small", color=GREY, **middle)
     return ax
 
 

@@ -15,8 +15,8 @@ NO_VALUE = "no value"
 
 
 def digits(value: float, significant: int = 6) -> str:
-    """Return a number with so many significant digits."""
-    return f"{value:.{significant}g}"
+    """Return a number with so many significant digits, 0 without a sign."""
+    return f"{value + 0.0:.{significant}g}"
 
 
 def number(value: float) -> str:

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 import xarray as xr
 
-from linksweep.tables.cells import digits, unit_of, with_unit
+from linksweep.tables.cells import digits, plain_unit, unit_of, with_unit
 from linksweep.tables.of_balance import ROUNDING
 from linksweep.tables.table import Part, Row, Table
 
@@ -35,9 +35,8 @@ FAILURES = {
 
 def run_parts(ds: xr.Dataset) -> Iterator[Part]:
     """Yield the table of a run and that of its peaks; of one that comes to nothing, a sentence and where it ends."""
-    status = str(ds["status"].attrs["flag_meanings"]).split()[int(ds["status"])]
-    if status != "ok":
-        yield FAILURES[status]
+    if failure := failure_of(ds):
+        yield failure
         last = int(np.isfinite(ds["time"].values).sum()) - 1
         ends = [(name, ds[name].isel(step=last)) for name in ("time", "angle", "speed") if "step" in ds.dims]
         yield Table(("where it ends", "", ""), [_row(title, value) for title, value in ends], right=(1,))
@@ -50,8 +49,13 @@ def run_parts(ds: xr.Dataset) -> Iterator[Part]:
     yield Table(header, [_peak(ds, name) for name in names], right=(1, 3, 4))
 
 
+def failure_of(ds: xr.Dataset) -> str:
+    """Return the sentence of a run that comes to nothing; "" for any other."""
+    return FAILURES.get(str(ds["status"].attrs["flag_meanings"]).split()[int(ds["status"])], "")
+
+
 def _row(title: str, value: xr.DataArray) -> Row:
-    return title, digits(float(value)), unit_of(value).removesuffix("1")
+    return title, digits(float(value)), plain_unit(value)
 
 
 def _peak(ds: xr.Dataset, name: str) -> Row:

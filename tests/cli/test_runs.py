@@ -1,5 +1,7 @@
 """Run-up and run-down on the command line: the table, the steps in a file, failures in a sentence, and clear errors."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -59,6 +61,14 @@ def test_a_run_that_comes_to_nothing_is_a_sentence_and_its_end(words, sentence, 
     assert main([*words, "--of", "F32"]) == 0
     out = capsys.readouterr().out
     assert out.startswith(sentence) and "where it ends" in out and "F32" not in out
+
+
+def test_a_run_backwards_that_does_not_start_ends_at_a_speed_without_a_sign():
+    brake = ls.Load("crank", torque=50.0)
+    run = ls.run_up(replace(PRESS, omega2=-30.0, loads=[brake]), ls.DCMotor(0.1, 160.0))
+    assert np.signbit(run.speed[-1])
+    ends = [line.split() for line in str(run.linksweep).splitlines()[-2:]]
+    assert ends == [["angle", "0", "°"], ["speed", "0", "rad/s"]]
 
 
 @pytest.mark.parametrize(

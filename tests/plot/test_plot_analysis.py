@@ -95,6 +95,20 @@ def test_the_torque_of_a_run_backwards_is_seen_on_top_of_its_speed():
     assert (ax.lines[0].get_linestyle(), beside.lines[0].get_linestyle()) == ("-", "-.")
 
 
+@pytest.mark.parametrize(
+    ("run", "sentence"),
+    [
+        (lambda: ls.run_up(PRESS, ls.DCMotor(0.1, 160.0)), "The motor does not start it"),
+        (lambda: ls.run_up(SWING, ls.DCMotor(10.0, 160.0), ratio=5.0), "It breaks off: the machine does not turn"),
+        (lambda: ls.run_down(PRESS, flywheel=0.3), "It keeps turning: over a cycle"),
+    ],
+)
+def test_a_run_that_comes_to_nothing_says_so(run, sentence):
+    ax = run().linksweep.run_up()
+    assert sentence in " ".join(text.get_text() for each in ax.figure.axes for text in each.texts).replace("\n", " ")
+    assert (ax.get_legend() is not None) == (len(ax.lines[0].get_xdata()) > 1)
+
+
 @pytest.mark.parametrize("frame", ["ground", "journal"])
 def test_three_pins_have_a_fourth_panel(frame):
     cycle = with_peaks(ls.sweep(ls.example("engine"), theta2=90))
