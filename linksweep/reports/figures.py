@@ -23,6 +23,7 @@ from linksweep.plot.machine import draw_machine
 from linksweep.reports.markup import Markup, symbol, tag
 from linksweep.reports.results_of_page import STEPS, Results
 from linksweep.results.sweep import sweep
+from linksweep.tables.cells import fixed
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -64,7 +65,7 @@ def _of_cycle(results: Results, drawing: Drawing) -> Iterator[Picture]:
     force, where = worst(results, drawing)
     bounded = np.isfinite(results.peaks[f"{force}_peak"])
     what = f"Largest pin force: {symbol(force)} at" if bounded else "Beside infinite pin forces:"
-    title = f"{what} θ₂ = {where:.1f}°"
+    title = f"{what} θ₂ = {fixed(where, 1)}°"
     yield Picture(title, SIZE, partial(draw_machine, results.scene, part_of(ds), where, forces=True))
     yield Picture("Forces in the joints", SIZE, partial(plot.forces, ds))
     kind = signals.drive_kind(signals.drive_name(ds)).capitalize()

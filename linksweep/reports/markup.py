@@ -12,6 +12,7 @@ from html import escape
 from typing import Any
 
 from linksweep.plot.kit import signals
+from linksweep.tables.cells import fixed
 
 NONE, THIN = "–", "\u202f"  # where there is no number; the narrow space within one, that no line breaks at
 VOID = ("img",)  # elements that have no contents
@@ -72,7 +73,7 @@ def tiny(value: float) -> Markup:
 
 def angle(value: float, digits: int = 1) -> Markup:
     """Return an angle [degree]."""
-    return number(value, "°", f"{value:.{digits}f}")
+    return number(value, "°", fixed(value, digits))
 
 
 def with_unit(text: str, unit: str) -> str:

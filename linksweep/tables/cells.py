@@ -19,6 +19,11 @@ def digits(value: float, significant: int = 6) -> str:
     return f"{value + 0.0:.{significant}g}"
 
 
+def fixed(value: float, decimals: int, sign: str = "") -> str:
+    """Return a number with so many decimals, 0 without a minus; a `sign` "+" stands before all others."""
+    return f"{round(value, decimals) + 0.0:{sign}.{decimals}f}"
+
+
 def number(value: float) -> str:
     """Format a number with four significant digits."""
     if value == 0.0:

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.mechanisms import indices
-from linksweep.tables.cells import digits, in_words, label, meanings, plain_unit, unit_of
+from linksweep.tables.cells import digits, fixed, in_words, label, meanings, plain_unit, unit_of
 from linksweep.tables.table import Part, Row, Table
 
 MOST_DIMS = 2
@@ -20,7 +20,7 @@ FEW = 4
 def parts_of_any(ds: xr.Dataset) -> Iterator[Part]:
     """Yield the table of single numbers, the table of what changes, and the flags in words."""
     for index in [dim for dim in indices() if ds.sizes.get(dim) == 1]:
-        yield f"at {index} = {float(ds[index].values[0]):.2f}°"
+        yield f"at {index} = {fixed(float(ds[index].values[0]), 2)}°"
         ds = ds.isel({index: 0}, drop=True)
     names = [str(name) for name in ds.data_vars if not _is_angle_of_another(ds, str(name))]
     numbers = [name for name in names if "flag_meanings" not in ds[name].attrs and ds[name].dtype.kind in "fiu"]
@@ -60,7 +60,7 @@ def _values(ds: xr.Dataset, names: list[str]) -> Table:
         for place in np.ndindex(ds[name].shape):
             where = [str(label(ds, dim, k)) for dim, k in zip(ds[name].dims, place, strict=True)]
             angle = float(ds[f"{name}_at"].values[place]) if f"{name}_at" in ds else np.nan
-            at = f"{angle:.2f}°" if np.isfinite(angle) else ""
+            at = f"{fixed(angle, 2)}°" if np.isfinite(angle) else ""
             title = f"{name} ({', '.join(where)})" if where else name
             value = float(ds[name].values[place])
             known = (title, "none", "") if np.isnan(value) else (title, digits(value), plain_unit(ds[name]))
@@ -99,4 +99,4 @@ def _end(ds: xr.Dataset, name: str, sign: float) -> tuple[str, str]:
 
 
 def _place(ds: xr.Dataset, dim: Hashable, k: int) -> str:
-    return f"{float(ds[dim].values[k]):.2f}°" if dim in indices() and dim in ds.coords else str(label(ds, dim, k))
+    return f"{fixed(float(ds[dim].values[k]), 2)}°" if dim in indices() and dim in ds.coords else str(label(ds, dim, k))

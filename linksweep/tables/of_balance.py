@@ -9,7 +9,7 @@ import xarray as xr
 
 from linksweep.analysis.balance.counterweights import Counterweight
 from linksweep.scene.shown_units import UnitSystem
-from linksweep.tables.cells import meanings, unit_of
+from linksweep.tables.cells import digits, meanings, unit_of
 from linksweep.tables.table import Row, Table
 
 ROUNDING = 1e-12
@@ -25,7 +25,7 @@ def zero_of_rounding(value: float, beside: float) -> float:
 
 def without_rounding(value: float, beside: float) -> str:
     """Format a value with five digits: 0 where it is only rounding beside another value, "none" for NaN."""
-    return "none" if np.isnan(value) else f"{zero_of_rounding(value, beside):.5g}"
+    return "none" if np.isnan(value) else digits(zero_of_rounding(value, beside), 5)
 
 
 def weight_table(weights: Iterable[Counterweight], system: UnitSystem) -> Table:
@@ -35,7 +35,7 @@ def weight_table(weights: Iterable[Counterweight], system: UnitSystem) -> Table:
     rows: list[Row] = []
     for weight in weights:
         numbers = system.value(weight.mass, "kg"), system.value(weight.at[0], "m"), weight.at[1]
-        rows.append((weight.link, *(f"{float(size):.5g}" for size in numbers)))
+        rows.append((weight.link, *(digits(float(size), 5) for size in numbers)))
     return Table(header, rows, right=(1, 2, 3))
 
 
@@ -44,7 +44,7 @@ def balance_table(ds: xr.Dataset) -> Table:
     rows: list[Row] = []
     for name, values in ds.data_vars.items():
         before, after = (float(values.sel(balance=when)) for when in ("before", "after"))
-        rows.append((str(name), f"{before:.5g}", without_rounding(after, BALANCED * before), unit_of(values)))
+        rows.append((str(name), digits(before, 5), without_rounding(after, BALANCED * before), unit_of(values)))
     return Table(("quantity", "before", "after", "unit"), rows, right=(1, 2), meanings=meanings(ds))
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.scene.curves.interpolation import RINGING
-from linksweep.tables.cells import in_words, unit_of, with_unit, words
+from linksweep.tables.cells import digits, fixed, in_words, unit_of, with_unit, words
 from linksweep.tables.table import Table
 
 JAMS = ("jam_start", "jam_end", "jam_place")
@@ -66,7 +66,8 @@ def _finding(ds: xr.Dataset, name: str) -> Iterator[Line]:
 def _arcs(ds: xr.Dataset) -> str:
     """Return the arcs on which one design can be assembled."""
     ends = zip(ds.arc_start.values, ds.arc_end.values, strict=True)
-    return " and ".join(f"{start:.4f}° to {end:.4f}°" for start, end in ends if np.isfinite(start)) or "nowhere"
+    arcs = [f"{fixed(start, 4)}° to {fixed(end, 4)}°" for start, end in ends if np.isfinite(start)]
+    return " and ".join(arcs) or "nowhere"
 
 
 def _of_pins(ds: xr.Dataset) -> Iterator[Line]:
@@ -76,7 +77,7 @@ def _of_pins(ds: xr.Dataset) -> Iterator[Line]:
     for pin in ds.pin.values:
         one = ds.sel(pin=pin)
         ends = [(float(one[f"transmission_angle_{end}"]), float(one[f"transmission_angle_{end}_at"])) for end in ENDS]
-        texts = [f"{value:.6g}° at {at:.6g}°" if np.isfinite(at) else f"{value:.6g}°" for value, at in ends]
+        texts = [f"{digits(value)}°" + (f" at {fixed(at, 4)}°" if np.isfinite(at) else "") for value, at in ends]
         if np.isfinite(ends[0][0]):
             yield f"transmission angle of {pin}", " to ".join(dict.fromkeys(texts))
 
@@ -88,9 +89,8 @@ def _of_jams(ds: xr.Dataset) -> Iterator[Line]:
     start, end, place = (ds[name] for name in JAMS)
     if start.ndim == 1:
         names = words(place)
-        arcs = (
-            f"{a:.4f}° to {b:.4f}° ({names[k]})" for a, b, k in zip(start.values, end.values, place.values, strict=True)
-        )
+        jams = zip(start.values, end.values, place.values, strict=True)
+        arcs = (f"{fixed(a, 4)}° to {fixed(b, 4)}° ({names[k]})" for a, b, k in jams)
         yield "friction jams from", " and ".join(arcs) or "nowhere"
     else:
         jammed = start.notnull().any("jam")
@@ -132,12 +132,12 @@ def _of_acceleration(ds: xr.Dataset) -> Iterator[Line]:
 
 def _of_one(ds: xr.Dataset) -> Iterator[Line]:
     angles = zip(ds.toggle.values, ds.toggle_angle.values, strict=True)
-    toggles = [f"{angle:.4f}° ({str(name).replace('_', ', ')})" for name, angle in angles if np.isfinite(angle)]
+    toggles = [f"{fixed(angle, 4)}° ({str(name).replace('_', ', ')})" for name, angle in angles if np.isfinite(angle)]
     yield "Grashof class", words(ds.grashof)[int(ds.grashof)]
     yield "can be assembled", words(ds.assembly)[int(ds.assembly)]
     yield "at theta2 from", _arcs(ds)
     yield "toggles at theta2", ", ".join(toggles) or "none"
-    yield "least transmission angle", f"{float(ds.transmission_angle_min):.4f}°"
+    yield "least transmission angle", f"{fixed(float(ds.transmission_angle_min), 4)}°"
 
 
 def _of_a_batch(ds: xr.Dataset) -> Iterator[Line]:
@@ -149,4 +149,4 @@ def _of_a_batch(ds: xr.Dataset) -> Iterator[Line]:
         yield title, ", ".join(f"{word} {n}" for word, n in zip(names, counts, strict=True) if n)
     least = ds.transmission_angle_min.min()  # where there is one
     if np.isfinite(least):
-        yield "least transmission angle", f"{float(least):.4f}°"
+        yield "least transmission angle", f"{fixed(float(least), 4)}°"

@@ -11,8 +11,17 @@ import xarray as xr
 
 from linksweep.chains.rows.beams import SECTION
 from linksweep.mechanisms import Mechanism
-from linksweep.results.peaks import quantity_of
-from linksweep.tables.cells import at, counts_of_words, digits, label, meanings, place_of_worst, plain_unit
+from linksweep.tables.cells import (
+    at,
+    counts_of_words,
+    digits,
+    fixed,
+    label,
+    meanings,
+    place_of_worst,
+    plain_unit,
+    unit_of,
+)
 from linksweep.tables.of_balance import ROUNDING
 from linksweep.tables.table import Part, Row, Table
 
@@ -57,15 +66,17 @@ def _row(ds: xr.Dataset, name: str) -> Row:
     if np.isnan(values.values).all():
         return name, "none", "", "", *("" for _ in ds.sizes)
     place = place_of_worst(values)
-    angle = f"{at(ds[f'{name}_at'], place):.2f}°" if f"{name}_at" in ds else ""
+    angle = f"{fixed(at(ds[f'{name}_at'], place), 2)}°" if f"{name}_at" in ds else ""
     labels = (label(ds, dim, place.get(dim)) for dim in ds.sizes)
     return name, digits(_without_rounding(ds, name, place)), plain_unit(values), angle, *labels
 
 
 def _without_rounding(ds: xr.Dataset, name: str, place: Mapping[Any, int]) -> float:
-    """Return an extreme at a place; 0 where it is only rounding beside the largest magnitude there."""
-    value, peak = at(ds[name], place), f"{quantity_of(name)}_peak"
-    return 0.0 if peak in ds and abs(value) <= ROUNDING * at(ds[peak], place) < np.inf else value
+    """Return an extreme at a place; 0 where it is only rounding beside the largest magnitude of its unit there."""
+    value, peaks = at(ds[name], place), [values for key, values in ds.data_vars.items() if str(key).endswith("_peak")]
+    alike = [peak for peak in peaks if unit_of(peak) == unit_of(ds[name]) and {*peak.dims} <= {*place}]
+    largest = np.fmax.reduce([0.0, *(at(peak, place) for peak in alike)])
+    return 0.0 if abs(value) <= ROUNDING * largest < np.inf else value
 
 
 def _remarks(ds: xr.Dataset, machine: type[Mechanism] | Mechanism) -> list[str]:

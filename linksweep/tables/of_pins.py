@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.analysis.pins.bearing_life import UNBOUNDED
-from linksweep.tables.cells import finite_or_inf, handy_unit, unit_of
+from linksweep.tables.cells import finite_or_inf, fixed, handy_unit, unit_of
 from linksweep.tables.table import Part, Row, Table
 
 BEARING = {
@@ -90,9 +90,9 @@ def _share_table(shares: xr.DataArray, count: int) -> Table:
     sources = {str(shares["source"].values[k]): float(values[k]) for k in order if values[k]}
     rows: list[Row] = []
     for source, share in {**sources, "all together": whole}.items():
-        part = f"{100.0 * share / whole:.1f} %" if abs(whole) > 1e-9 * size else ""
+        part = f"{fixed(100.0 * share / whole, 1)} %" if abs(whole) > 1e-9 * size else ""
         rows.append((source, f"{share:.5g}", part))
     of_samples = f", largest of {count} samples" if count > 1 else ""
-    title = f"{name} at theta2 = {float(shares.theta2):.2f}°{of_samples}"
+    title = f"{name} at theta2 = {fixed(float(shares.theta2), 2)}°{of_samples}"
     header = (title, f"share [{unit_of(shares)}]", "of the whole")
     return Table(header, rows, right=(1, 2))

@@ -7,7 +7,8 @@ from collections.abc import Iterator
 import numpy as np
 import xarray as xr
 
-from linksweep.tables.cells import PLAIN_UNITS, digits, unit_of, with_unit
+from linksweep.tables.cells import PLAIN_UNITS, digits, fixed, unit_of, with_unit
+from linksweep.tables.of_balance import ROUNDING
 from linksweep.tables.table import Part, Row, Table
 
 
@@ -16,12 +17,14 @@ def sensitivity_parts(ds: xr.Dataset) -> Iterator[Part]:
     for name in _results(ds, "_derivative"):
         yield f"{name} = {with_unit(float(ds[name]), unit_of(ds[name]))}{_remark(ds, name)}"
         slopes, elasticity = (ds[f"{name}_{word}"].values for word in ("derivative", "elasticity"))
+        rounding = (np.abs(elasticity) <= ROUNDING) & (np.abs(slopes) <= ROUNDING * abs(float(ds[name])))
+        slopes = np.where(rounding, 0.0, slopes)
         order = np.argsort(-np.nan_to_num(np.abs(elasticity)), kind="stable")
         rows: list[Row] = [
             (
                 str(ds["parameter"].values[k]),
-                f"{elasticity[k]:+.3f}",
-                f"{slopes[k]:.5g}",
+                fixed(elasticity[k], 3, "+"),
+                digits(slopes[k], 5),
                 f"{unit_of(ds[name])} per {ds['parameter_unit'].values[k]}",
             )
             for k in order
@@ -43,7 +46,7 @@ def tolerance_parts(ds: xr.Dataset) -> Iterator[Part]:
             yield f"drawn designs, exact: {_drawn(number, unit)}"
         if not known:
             continue
-        share, lower, upper = (ds[f"{name}_{word}"].values for word in ("share", "lower", "upper"))
+        share, lower, upper = (ds[f"{name}_{word}"].values + 0.0 for word in ("share", "lower", "upper"))
         rows: list[Row] = [
             (str(ds["parameter"].values[k]), f"{100.0 * share[k]:.1f} %", f"{lower[k]:+.3g}", f"{upper[k]:+.3g}", plain)
             for k in np.argsort(-np.nan_to_num(share), kind="stable")

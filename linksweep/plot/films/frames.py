@@ -26,6 +26,7 @@ from linksweep.results.peak_search.paths import Part
 from linksweep.results.sweep import sweep
 from linksweep.scene.scene import Scene
 from linksweep.scene.shown_units import UnitSystem
+from linksweep.tables.cells import fixed
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -263,7 +264,7 @@ def readings(ax: Axes, angle: str, words: dict[str, str]) -> Callable[[float, di
         texts[name] = ax.annotate("", (1.0, 1.0), (4.0, above), xycoords=(title, "axes fraction"), **style)
 
     def say(angle: float, values: dict[str, str]) -> list[Artist]:
-        for name, text in {"": f"{angle:.1f}°".replace("-", "−"), **values}.items():
+        for name, text in {"": f"{fixed(angle, 1)}°".replace("-", "−"), **values}.items():
             texts[name].set_text(text)
         return list(texts.values())
 

@@ -9,6 +9,7 @@ import numpy as np
 from linksweep.plot.kit import signals
 from linksweep.plot.kit.colors import BLUE, GREY, VERMILION
 from linksweep.plot.kit.style import grid
+from linksweep.tables.cells import fixed
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -98,11 +99,11 @@ def _arrow(ax: Axes, name: str, largest: signals.Peak, force: np.ndarray, units:
 
     beyond = largest.value > BEYOND * usual
     tip = force * (BEYOND * usual / np.hypot(*force)) if beyond else force
-    direction = round(float(np.degrees(np.arctan2(force[1], force[0]))), 1) + 0.0  # no −0.0
+    direction = float(np.degrees(np.arctan2(force[1], force[0])))
     lines = (
         f"{signals.force_symbol(name)} = {signals.number(largest.value)} {units}",
         f"{'off scale ' * beyond}at $\\theta_2$ = {signals.angle_text(largest.angle)}",
-        f"direction {direction:.1f}°".replace("-", "−"),
+        f"direction {fixed(direction, 1)}°".replace("-", "−"),
     )
     arrow(ax, np.zeros(2), tip, VERMILION)
     ax.plot(*tip, "o", color=VERMILION, markersize=4.5, zorder=2.7, label=f"_peak {name}")

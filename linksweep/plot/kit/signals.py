@@ -15,6 +15,7 @@ from linksweep.plot.kit.drawings import drawing_of_results, efforts
 from linksweep.results.compute import require_results
 from linksweep.scene.grid import whole_turns
 from linksweep.scene.shown_units import UnitSystem
+from linksweep.tables.cells import digits
 from linksweep.tables.cells import number as number
 
 INDEX = "theta2"
@@ -236,7 +237,7 @@ def labelled(sizes: Sequence[float]) -> list[bool]:
 
 
 def angle_text(angle: float) -> str:
-    return f"{round(angle, 2):.5g}°".replace("-", "−")
+    return f"{digits(round(angle, 2), 5)}°".replace("-", "−")
 
 
 def symbol(name: str) -> str:
