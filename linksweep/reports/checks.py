@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
+from linksweep.base.degrees import signed_distance
 from linksweep.plot.kit import signals
 from linksweep.reports.markup import Markup, angle, joined, number, safe, symbol, table, tag, tiny
 from linksweep.reports.results_of_page import STEPS, Results
@@ -26,6 +27,11 @@ KNOWN = {
     *("alpha2_difference", "alpha2_difference_at", "slide_at_dead_centre"),
 }
 """Findings that have a row of their own here, or in the table of the geometry."""
+BORDERS = {
+    *("arc_start", "arc_end", "toggle_angle", "dead_centre_angle"),
+    *("jam_start", "jam_end", "jam_angle", "leaves_track_at", "stalls_at"),
+}
+"""Findings beyond which there is no result, or at which alone there is none."""
 EXACT = 1e-6  # of the largest force: far below what anybody knows of masses and loads
 
 
@@ -192,7 +198,7 @@ def _where(results: Results) -> Markup:
     ds = results.cycle.rename({results.scene.mechanism.index: signals.INDEX})
     by_reason: dict[str, list[Markup]] = {}
     for gap in signals.gaps(ds, ds["status"]):
-        by_reason.setdefault(gap.reason, []).append(_angles(gap))
+        by_reason.setdefault(gap.reason, []).append(_angles(gap, results))
     reasons = [joined(reason, " ", _listed(angles)) for reason, angles in by_reason.items()]
     lost = ", no work of a cycle, no flywheel, no orders" if results.linkage else ""
     lost = "" if results.part else f"; there are no means{lost}"
@@ -200,11 +206,19 @@ def _where(results: Results) -> Markup:
     return joined("No result: ", _listed(reasons), ". ", rest) if reasons else safe(rest)
 
 
-def _angles(gap: signals.Gap) -> Markup:
+def _angles(gap: signals.Gap, results: Results) -> Markup:
     """Return the angles of a gap: one, where a single sample has no result."""
     if gap.width < 2.5 / STEPS:
-        return joined("at ", angle(0.5 * (gap.start + gap.stop)))
-    return joined("from ", angle(gap.start), " to ", angle(gap.stop))
+        return joined("at ", _border(0.5 * (gap.start + gap.stop), results))
+    return joined("from ", _border(gap.start, results), " to ", _border(gap.stop, results))
+
+
+def _border(sample: float, results: Results) -> Markup:
+    """Return an end of a gap: the exact one beside its sample, where the check has it."""
+    known = [values.values.ravel() for name, values in results.check.data_vars.items() if name in BORDERS]
+    away = signed_distance(np.concatenate([np.empty(0), *known]), sample, results.scene.period_of_motion)
+    near = away[np.abs(away) < 1.01 / STEPS]
+    return angle(sample + near[np.argmin(np.abs(near))], 2) if near.size else angle(sample)
 
 
 def _words(flag: xr.DataArray) -> str:
