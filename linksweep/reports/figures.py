@@ -124,11 +124,14 @@ def worst(results: Results, drawing: Drawing) -> tuple[str, float]:
 
 
 def legend_below(ax: Axes) -> None:
-    """Move the legend below the axes, where it takes no width and hides nothing."""
-    legend, entries = ax.get_legend(), ax.get_legend_handles_labels()
-    if legend is not None:
-        legend.remove()
-    ax.figure.legend(*entries, loc="outside lower center", ncols=3, fontsize="small", frameon=False)
+    """Move the legend below the axes, where it hides nothing, in the most columns that the figure has room for."""
+    legend, entries, figure = ax.get_legend(), ax.get_legend_handles_labels(), ax.figure
+    for columns in (3, 2, 1):
+        if legend is not None:
+            legend.remove()
+        legend = figure.legend(*entries, loc="outside lower center", ncols=columns, fontsize="small", frameon=False)
+        if legend.get_window_extent().width <= figure.bbox.width:
+            return
 
 
 def pictures(panels: Iterable[Picture]) -> Markup:
