@@ -44,13 +44,11 @@ def tolerance_parts(ds: xr.Dataset) -> Iterator[Part]:
             yield f"worst case, linear: {digits(number['worst_least'])} to {with_unit(number['worst_largest'], unit)}"
         if "drawn_sigma" in number:
             yield f"drawn designs, exact: {_drawn(number, unit)}"
-        if not known:
-            continue
         share, lower, upper = (ds[f"{name}_{word}"].values + 0.0 for word in ("share", "lower", "upper"))
-        rows: list[Row] = [
-            (str(ds["parameter"].values[k]), f"{100.0 * share[k]:.1f} %", f"{lower[k]:+.3g}", f"{upper[k]:+.3g}", plain)
-            for k in np.argsort(-np.nan_to_num(share), kind="stable")
-        ]
+        rows: list[Row] = []
+        for k in np.argsort(-np.nan_to_num(share), kind="stable"):
+            numbers = f"{100.0 * share[k]:.1f} %", f"{lower[k]:+.3g}", f"{upper[k]:+.3g}", plain
+            rows.append((str(ds["parameter"].values[k]), *(numbers if known else ("none", "none", "none", ""))))
         yield Table(("parameter", "of the variance", "at lower", "at upper limit", ""), rows, right=(1, 2, 3))
 
 
