@@ -14,7 +14,7 @@ from benchmarks.machine import FACT, machine, short_name
 from benchmarks.report import Run, from_json, keep, page, section
 from benchmarks.rivals import limit, peers
 from benchmarks.speed import hard_peaks
-from benchmarks.timing import FASTER, SHARE, WALL, Race, Row, cores, race
+from benchmarks.timing import FASTER, SHARE, WALL, Race, Row, cores, race, timed
 
 SLOW = ("hard_peaks", "missed", "first", "growth", "skipping")
 CHECKED = {"solves", "grids", "unknowns", "peaks", "hard_peaks", "skipping", "mechanisms", "linkages"}
@@ -129,6 +129,12 @@ def test_calls_are_timed_in_turn():
     measured = race(calls, replace(QUICK, rounds=3))
     assert "".join(order[-6:]) == "ABABAB"
     assert [len(seconds) for seconds in measured.seconds.values()] == [3, 3]
+
+
+def test_a_call_during_which_the_clock_stands_still_is_timed_again():
+    calls, ticks = [], iter([1.0, 1.0, 2.0, 2.5])
+    assert timed(lambda: calls.append(1), lambda: next(ticks)) == 0.5
+    assert len(calls) == 2
 
 
 def test_a_rows_figure_is_the_median_of_the_rounds_ratios():
