@@ -8,7 +8,7 @@ from typing import Any
 
 import xarray as xr
 
-from linksweep.files.netcdf import scene_given
+from linksweep.files.netcdf import scene_from
 from linksweep.plot.kit.drawings import drawing_of
 from linksweep.scene.scene import Scene
 
@@ -46,7 +46,7 @@ def explore(scene: Scene | xr.Dataset, *, title: str | None = None) -> Any:
     >>> explorer.scene.mechanism.coupler.length
     0.22
     """
-    one = scene_given(scene)
+    one = scene_from(scene)
     drawing_of(one.mechanism)
     panel = _panel()
     panel.extension(inline=True)  # its scripts in the notebook, which then needs no network

@@ -187,8 +187,8 @@ def loaded(path: Path) -> xr.Dataset:
         return ds.load()
 
 
-def scene_given(scene: Scene | xr.Dataset, whole: bool = True) -> Scene:
-    """Return the scene that the parameter `scene` gives, itself or by a Dataset that came from it, as by `scene_of`."""
+def scene_from(scene: Scene | xr.Dataset, whole: bool = True) -> Scene:
+    """Return a scene itself, or the one that a Dataset came from, as by `scene_of`; ValueError names the parameter."""
     if isinstance(scene, Scene):
         return scene
     wrong = f"scene is a {type(scene).__name__}: must be a Scene, as from ls.load_scene, or a Dataset of linksweep"

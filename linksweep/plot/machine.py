@@ -12,7 +12,7 @@ from linksweep.base.checked_number import one_pair
 from linksweep.base.conversion import to_float64
 from linksweep.base.fields import POLAR_POINT
 from linksweep.base.validate import choice_problems, flag_problems, refuse
-from linksweep.files.netcdf import scene_given
+from linksweep.files.netcdf import scene_from
 from linksweep.mechanisms.drawing import Block, Drawing, Rail
 from linksweep.plot.kit import machine_parts, signals
 from linksweep.plot.kit.colors import BLACK, GREY, LOAD, SKY, force_color
@@ -81,7 +81,7 @@ def mechanism(
     'x [m]'
     """
     part = part_of(scene) if isinstance(scene, xr.Dataset) else None
-    return draw_machine(scene_given(scene, whole=False), part, theta2, ax, point, link, forces)
+    return draw_machine(scene_from(scene, whole=False), part, theta2, ax, point, link, forces)
 
 
 def draw_machine(

@@ -20,7 +20,7 @@ from linksweep.analysis.strength.material import Material
 from linksweep.base.validate import refuse
 from linksweep.engine.threads import limits_threads
 from linksweep.files.atomic import ending_of
-from linksweep.files.netcdf import scene_given, write_text
+from linksweep.files.netcdf import scene_from, write_text
 from linksweep.reports import checks as page_checks
 from linksweep.reports import figures as page_figures
 from linksweep.reports import scene_tables
@@ -107,7 +107,7 @@ def report(
         refuse([] if material is None else ["material: must be left out for several cylinders"])
         write_text(page_of_cylinders(scene.in_memory, title), path)
         return
-    one = scene_at(scene) if isinstance(scene, xr.Dataset) else scene_given(scene)
+    one = scene_at(scene) if isinstance(scene, xr.Dataset) else scene_from(scene)
     refuse(_design_problems(one))
     part = part_of("theta2", theta2, one)
     refuse(["material: strength is of the whole cycle; leave out theta2"] if material and part else [])

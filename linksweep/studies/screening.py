@@ -53,7 +53,7 @@ class Screening:
 
     @property
     def results(self) -> list[str]:
-        """Names of those that are no parameters and not the status: results of `linksweep.peaks`."""
+        """Names of the results that `linksweep.peaks` makes: neither parameters nor the status."""
         return [name for name in self.names if name not in self.parameters and name != "status"]
 
     @cached_property

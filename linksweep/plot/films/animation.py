@@ -11,7 +11,7 @@ from linksweep.base.checked_number import one_pair
 from linksweep.base.fields import POLAR_POINT
 from linksweep.base.memory import require_memory
 from linksweep.base.validate import count_problems, quote, refuse
-from linksweep.files.netcdf import scene_given
+from linksweep.files.netcdf import scene_from
 from linksweep.plot.films.cylinder_film import film_of_cylinders
 from linksweep.plot.films.frames import DPI, SAMPLES, SIZE
 from linksweep.plot.films.machine_film import film_of_crank, film_of_track
@@ -76,7 +76,7 @@ def animate(
         with small_type():
             return film_of_cylinders(scene.in_memory, frames, title or f"Engine of {len(scene.crank_angles)} cylinders")
     point = None if point is None else one_pair("point", point, POLAR_POINT)
-    one = scene_given(scene, whole=False)
+    one = scene_from(scene, whole=False)
     index = one.mechanism.index
     sound = isinstance(scene, Scene) or index in scene.dims
     refuse([] if sound else [f"scene has no dimension {index}: take what ls.sweep returns"])

@@ -12,7 +12,7 @@ from linksweep.base.checked_number import one_number, one_pair
 from linksweep.base.fields import POLAR_POINT
 from linksweep.base.validate import Rule, choice_problems, flag_problems, listed, quote, refuse
 from linksweep.files.atomic import ending_of, whole
-from linksweep.files.netcdf import scene_given
+from linksweep.files.netcdf import scene_from
 from linksweep.plot.kit.drawings import drawing_of
 from linksweep.plot.machine import crank_angle
 from linksweep.plot.sheets.skeleton import Curve, skeleton
@@ -78,7 +78,7 @@ def save_drawing(
     """
     ending = ending_of(path, ENDINGS)
     refuse(flag_problems("machine", machine))
-    one = scene_given(scene, whole=False)
+    one = scene_from(scene, whole=False)
     angle = crank_angle(theta2)
     drawing_of(one.mechanism)  # refuses a machine without one, before its curves
     points = None if curves is None else _points(one, curves)
