@@ -27,11 +27,17 @@ PLACES = [
     for place in (((0.0, down - 14.0), "center"), ((7.0, down - 3.0), "left"), ((-7.0, down - 3.0), "right"))
 ]
 """Offsets of a name from its point [pt], in order of preference."""
+BESIDE = [place for place, _ in PLACES[:3]]
+"""Offsets of names that stand beside their points."""
 SMALL = {"textcoords": "offset points", "ha": "center", "fontsize": 7.5}
 LEGEND = {"loc": "lower right", "frameon": False, "fontsize": 8.0}
 GAP = 2.0
 """Gap between names [px]."""
-WHITE = {"facecolor": "white", "edgecolor": "none", "alpha": 0.7, "pad": 0.5}
+LEADER = {"arrowstyle": "-", "color": GREY, "linewidth": 0.5, "shrinkA": 0.0, "shrinkB": 3.0}
+"""Style of a line from a name to its point."""
+HEIGHT = 6.0
+"""Height of a name [pt]."""
+WHITE = {"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.5}
 
 
 def draw(name: str, rows: list[Row], folder: Path = HERE) -> None:
@@ -92,7 +98,7 @@ def _color(row: Row) -> str:
 
 
 def _names(ax: Axes, rows: list[Row]) -> None:
-    """Write each name below its point, or at the next place free of other names and points."""
+    """Write each name below its point, or at the next place free of other names and points, a thin line between."""
     ax.figure.draw_without_rendering()
     taken = [_around(ax.transData.transform(_point(row))) for row in rows]
     for row in sorted(rows, key=lambda row: row.seconds):
@@ -103,6 +109,8 @@ def _names(ax: Axes, rows: list[Row]) -> None:
             if not any(name.get_window_extent().padded(GAP).overlaps(other) for other in taken):
                 break
         taken.append(name.get_window_extent())
+        if place not in BESIDE:
+            ax.annotate("", _point(row), (place[0], place[1] + HEIGHT), **SMALL, arrowprops=LEADER, zorder=1.0)
 
 
 def _around(point: Any) -> Any:

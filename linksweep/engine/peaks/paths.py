@@ -13,12 +13,14 @@ import numpy as np
 
 from linksweep.engine.kernel.machine_code import INTEGER, INTEGERS, TABLE
 from linksweep.engine.kernel.translate import translated
+from linksweep.engine.patience import Patience
 from linksweep.engine.peaks import brackets
 from linksweep.engine.peaks.brackets import BEYOND, PEAK, PEAK_X, open_bracket
 from linksweep.engine.peaks.summits import might_reach, noise
 
-INTERPRETED_SAMPLES = 100_000
-"""Samples that a search along paths may evaluate interpreted."""
+SEARCHES, INTERPRETED = Patience(), 100_000
+"""Count of samples and brackets that searches along paths have interpreted so far, and the most of them: they take a
+tenth of a second, as their machine code does to be made."""
 TWIN, SMOOTH = 1e-6, 1000.0
 """Distance between two samples, relative to that of the next, and difference of a signal there, in units of its noise,
 below which they are the two sides of a break at which it does not jump: rounding tells which of them is higher, and the
@@ -38,17 +40,18 @@ def open_brackets(rows: Array, x: Array, before: Array, after: Array, joined: bo
     Samples `rows` (path, signal, sample) are at `x` (path, sample), their neighbours at `before` and `after`. `joined`
     tells whether the ends of a path meet.
     """
-    run: Callable = translated(open_on_paths, OF_PATHS) if rows.size > INTERPRETED_SAMPLES else open_on_paths
+    interpret = SEARCHES.should_interpret(rows.size, INTERPRETED)
+    run: Callable = open_on_paths if interpret else translated(open_on_paths, OF_PATHS)
     arrays, places = map(np.ascontiguousarray, (rows, x, before, after)), np.empty(x.shape[1], dtype=np.int64)
     return run(*arrays, joined, table, best, places)
 
 
-def refine(samples: int, table: Array, count: int, best: Array, values: Values) -> None:
-    """Refine brackets, the first `count` of a table, until none is left; `best` takes the peaks of their tags. They are
-    refined by machine code where there were many samples."""
-    compiled, steps = samples > INTERPRETED_SAMPLES, (brackets.place_trials, brackets.insert_trials)
-    place_trials, insert_trials = (step.compiled if compiled else step for step in steps)
-    advance = translated(brackets.advance, (TABLE, INTEGER, TABLE)) if compiled else brackets.advance
+def refine(table: Array, count: int, best: Array, values: Values) -> None:
+    """Refine brackets, the first `count` of a table, until none is left; `best` takes the peaks of their tags."""
+    interpret = SEARCHES.should_interpret(count, INTERPRETED)
+    steps = brackets.place_trials, brackets.insert_trials
+    place_trials, insert_trials = (step if interpret else step.compiled for step in steps)
+    advance = brackets.advance if interpret else translated(brackets.advance, (TABLE, INTEGER, TABLE))
     trials, values_there = (slice(first, first + len(brackets.TRIALS)) for first in (brackets.X1, brackets.F1))
     for _ in range(brackets.ROUNDS):
         if not count:

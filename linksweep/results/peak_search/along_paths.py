@@ -237,7 +237,7 @@ def _search(group: Group, signals: tuple[str, ...], paths: Paths, current: Array
     with np.errstate(all="ignore"):
         best[brackets.PEAK] = np.fmax(best[brackets.PEAK], current.ravel())
         count = _keep_promising(lanes, count, best[brackets.PEAK], paths, len(signals))
-        refine(paths.x.size * len(signals), lanes, count, best, values_at)
+        refine(lanes, count, best, values_at)
     value, x, bound = (best[row].reshape(-1, len(signals)) for row in (brackets.PEAK, brackets.PEAK_X, brackets.BEYOND))
     angle = angle_in_period(paths.angles(np.arange(count_of_paths)[:, None], x), group.scene.period)
     return Best(value, angle, bound, np.full(value.shape, samples[:, None], dtype=float))
@@ -265,7 +265,7 @@ def rises(group: Group, signal: str, paths: Paths, level: Array) -> Rises:
         return values_along(path[tag], x)[0]
 
     with np.errstate(all="ignore"):
-        refine(paths.x.size, lanes, count, best, values_at)
+        refine(lanes, count, best, values_at)
     angle = angle_in_period(paths.angles(path, best[brackets.PEAK_X]), group.scene.period)
     return Rises(path, angle, best[brackets.PEAK])
 

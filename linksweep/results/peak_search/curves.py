@@ -139,7 +139,7 @@ def _refined(curves: Curves, brackets: Extremes) -> Extremes:
         return -brackets.sign[tag] * curves.at(brackets.curve[tag], x)[0]
 
     with np.errstate(all="ignore"):
-        refine(curves.x.size, lanes, count, best, heights)
+        refine(lanes, count, best, heights)
     value, noise = curves.at(brackets.curve, best[search.PEAK_X])
     x, values = brackets.x.copy(), brackets.values.copy()
     x[1], values[1] = best[search.PEAK_X], value

@@ -101,6 +101,27 @@ def test_no_trial_lies_so_close_to_the_middle_that_rounding_alone_tells_them_apa
     assert (away == 0.0).any()
 
 
+@pytest.mark.parametrize("joined", [True, False])
+def test_searches_along_paths_have_the_same_bits_compiled_and_interpreted(joined, monkeypatch):
+    x, signal = np.sort(np.random.default_rng(3).uniform(0.0, 6.0, (5, 60)), axis=1), np.arange(2.0)
+    before, after = np.append(x[:, -1:] - 6.0, x[:, :-1], axis=1), np.append(x[:, 1:], x[:, :1] + 6.0, axis=1)
+
+    def of(path, k, at):
+        return np.sin((2.0 + path) * at + k) * np.exp(np.cos(at))
+
+    def peaks(interpreted):
+        monkeypatch.setattr(paths.SEARCHES, "waited", interpreted)
+        table, best = np.zeros((b.BRACKET_ROWS, b.in_blocks(320))), np.zeros((b.BEST_ROWS, 10))
+        rows = of(np.arange(5.0)[:, None, None], signal[:, None], x[:, None, :])
+        count = paths.open_brackets(rows, x, before, after, joined, table, best)
+        paths.refine(table, count, best, lambda tag, at: of(tag // 2, tag % 2, at))
+        return best[[b.PEAK, b.PEAK_X, b.BEYOND]], paths.SEARCHES.waited
+
+    (interpreted, waited), (compiled, beyond) = map(peaks, (0, paths.INTERPRETED))
+    assert 0 < waited <= paths.INTERPRETED < beyond
+    np.testing.assert_array_equal(compiled, interpreted)
+
+
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_a_peak_beside_a_break_without_a_jump_is_found_on_either_side(side):
     """1 − (x + 0.3)², which rounding makes higher on the far side of a break at 0; and the same mirrored."""
@@ -110,6 +131,6 @@ def test_a_peak_beside_a_break_without_a_jump_is_found_on_either_side(side):
     before, after = np.append(x[:, :1] - 1e-9, x[:, :-1], axis=1), np.append(x[:, 1:], x[:, -1:] + 1e-9, axis=1)
     table, best = np.zeros((b.BRACKET_ROWS, b.in_blocks(1))), np.empty((b.BEST_ROWS, 1))
     count = paths.open_brackets(values[None], x, before, after, False, table, best)
-    paths.refine(x.size, table, count, best, lambda tag, at: 1.0 - (at + side * 0.3) ** 2)
+    paths.refine(table, count, best, lambda tag, at: 1.0 - (at + side * 0.3) ** 2)
     assert best[b.PEAK, 0] == pytest.approx(1.0, rel=1e-11)
     assert best[b.PEAK_X, 0] == pytest.approx(-side * 0.3, abs=1e-5)
