@@ -57,6 +57,8 @@ Fields = Mapping[str, Field]
 """Inputs of a plan by name."""
 Sizes = Mapping[str, int]
 """Sizes of the design dims."""
+Places = Mapping[str, np.ndarray]
+"""Indices of some designs along each design dim."""
 
 
 class Grid(NamedTuple):

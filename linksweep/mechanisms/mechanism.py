@@ -12,7 +12,7 @@ import numpy as np
 
 from linksweep.base.equality import ByContent
 from linksweep.base.fields import ANYTHING, declared, field_problems
-from linksweep.base.frozen import cached_property
+from linksweep.base.frozen import bare, cached_copy, cached_property
 from linksweep.base.validate import Number, refuse
 from linksweep.chains.finding import Checks
 from linksweep.chains.gears import Geared
@@ -185,6 +185,17 @@ class Mechanism(ByContent, ABC):
     def driven_numbers(self, motion: Mapping[str, Number]) -> OverDesigns:
         """Return functions that derive further numbers of the physics from the design and its motion."""
         return ()
+
+    @property
+    @cached_copy
+    def bare(self) -> Self:
+        """Machine whose arrays have no labels."""
+        return bare(self)
+
+    @cached_property
+    def numbers(self) -> dict[str, Any]:
+        """`parameters`, computed once."""
+        return self.parameters()
 
     @cached_property
     def parts(self) -> Mapping[str, Any]:

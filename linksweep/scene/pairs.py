@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 import numpy as np
 
-from linksweep.engine.run import Field, Grid, evaluate
+from linksweep.base.frozen import cached_beside
+from linksweep.engine.run import Field, Grid, Places, evaluate
 from linksweep.engine.trace.plan import Plan, plan
 
 if TYPE_CHECKING:
@@ -21,8 +22,6 @@ if TYPE_CHECKING:
 
 Array = np.ndarray
 Table = TypeVar("Table", bound=NamedTuple)
-Places = Mapping[str, Array]
-"""Indices of some designs along each design dim."""
 
 
 def quantities_at(scene: Scene, names: tuple[str, ...], designs: Array, angles: Array) -> Array:
@@ -46,7 +45,7 @@ class Pairs:
     def __init__(self, scene: Scene, designs: Array, angles: Array, loaded: bool = True) -> None:
         self.scene, self.designs, self.count = scene, designs, len(angles)
         if self.count:
-            self.inputs, self.grid, self.sample = _inputs_at(scene, angles, loaded)
+            self.inputs, self.grid, self.sample = _inputs_at(scene, designs, angles, loaded)
 
     def values(self, names: tuple[str, ...], motion: Mapping[str, Array] | None = None) -> Array:
         """Return values (names, pairs) of quantities.
@@ -59,27 +58,39 @@ class Pairs:
         own = {name for name, form in inputs.forms if (isinstance(form, tuple) and form) or name in motion}
         forms = tuple((name, (dim,) if name in own else form) for name, form in inputs.forms)
         request = plan(self.scene.table, names, forms)
-        places = places_of(inputs.sizes, self.designs) | {dim: self.sample}
+        places = places_of(self.scene.at_one_angle.inputs.sizes, self.designs) | {dim: self.sample}
         fields = inputs_along(dim, request, inputs, places)
         fields |= {name: Field((dim,), values) for name, values in motion.items() if name in request.inputs}
         values = evaluate(request, fields, self.grid, {})
         return np.stack([np.broadcast_to(values[name].values, self.count) for name in names])
 
 
-def _inputs_at(scene: Scene, angles: Array, loaded: bool) -> tuple[Inputs, Grid, Array]:
-    """Return a scene's inputs at the distinct angles of a period, the grid of all angles, and the index of each angle
-    among the distinct ones.
+def _inputs_at(scene: Scene, designs: Array, angles: Array, loaded: bool) -> tuple[Inputs, Grid, Array]:
+    """Return a scene's inputs at angles of a period, the grid of all angles, and the index of each among the former.
 
-    Designs share their even samples: loads and cosines are thus evaluated once for each distinct angle.
+    Designs share their even samples: loads and cosines are thus evaluated once for each distinct angle, but for arrays
+    of designs of their own (`changes_by_pairs`).
     """
     if scene.steady or not loaded:
         return scene.at_one_angle.inputs, scene.grid(angles), np.empty(0, dtype=int)
+    if changes_by_pairs(scene):
+        known, places = scene.grid(angles), places_of(scene.at_one_angle.inputs.sizes, designs)
+        inputs = scene.at(known._replace(angles=in_period(angles, scene.period)), places).inputs
+        return inputs, known, np.arange(len(angles))
     different = np.unique(angles)
     sample = np.searchsorted(different, angles)  # faster than numpy's own inverse, for few different angles
     known = scene.grid(different)
     folded, first, place = np.unique(in_period(different, scene.period), return_index=True, return_inverse=True)
     inputs = scene.at(known._replace(angles=folded, table=known.table.take(first, axis=1))).inputs
     return inputs, known._replace(angles=angles, table=known.table.take(sample, axis=1)), place[sample]
+
+
+@cached_beside
+def changes_by_pairs(scene: Scene) -> bool:
+    """Return whether designs have arrays over the angle of their own, but no function, which all would call at the
+    angles of each."""
+    own = (scene.mechanism.index in array.dims and array.ndim > 1 for array in scene.arrays.values())
+    return any(own) and not scene.functions
 
 
 def in_period(angle: Array, period: float) -> Array:

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
 
+from linksweep.base.frozen import with_sound
 from linksweep.base.validate import Number, Rule, is_lazy, refuse
-from linksweep.engine.run import Grid, evaluate
+from linksweep.engine.run import Grid, Places, evaluate
 from linksweep.engine.trace.plan import plan
 from linksweep.mechanisms import Mechanism
 from linksweep.mechanisms.strokes import Stroke
@@ -29,10 +30,21 @@ LENGTH = Rule("length", above=0.0, over_angle=True)
 
 @dataclass(frozen=True, eq=False)
 class Revolution:
-    """A scene and the angles of a grid. The properties `omega2`, `alpha2` and `derived_alpha2` are caches."""
+    """A scene and the angles of a grid; with `places`, of each angle the indices of its own design.
+
+    Arrays over designs and angles are then evaluated for these pairs alone, and are over the angles. The properties
+    `omega2`, `alpha2` and `derived_alpha2` are caches.
+    """
 
     scene: Scene
     grid: Grid
+    places: Places | None = field(default=None, kw_only=True)
+
+    def sampled(self) -> Scene:
+        """Return the scene with all that changes over the revolution evaluated at the angles."""
+        loads = tuple(load.sampled(f"loads[{k}]", self) for k, load in enumerate(self.scene.loads, 1))
+        mechanism = self.mechanism.at_angles(self.sample_length)
+        return with_sound(self.scene, mechanism=mechanism, omega2=self.omega2, alpha2=self.alpha2, loads=loads)
 
     @property
     def mechanism(self) -> Mechanism:
@@ -60,7 +72,8 @@ class Revolution:
     def derived_alpha2(self) -> xr.DataArray:
         """Angular acceleration ω2·dω2/dθ2 [rad/s²] of a crank whose omega2 changes with theta2."""
         curve = self.scene.curves.get("omega2")
-        return acceleration("omega2", self.scene.omega2, OMEGA2, self.grid, self.mechanism.period, curve)
+        speed, turn = self.omega2, self.mechanism.period
+        return acceleration("omega2", self.scene.omega2, OMEGA2, self.grid, turn, speed, curve, self.places)
 
     @property
     def turning(self) -> Number:
@@ -72,12 +85,12 @@ class Revolution:
 
     def sample(self, path: str, value: Any, rule: Rule) -> Any:
         """Return the parameter at a path, evaluated at the angles if it changes with them."""
-        return at_angles(path, value, rule, self.grid, self.scene.curves.get(path))
+        return at_angles(path, value, rule, self.grid, self.scene.curves.get(path), self.places)
 
     def sample_length(self, path: str, length: Any) -> tuple[Number, Number, Number]:
         """Return a length that changes with theta2 at the angles, and its derivatives [m/rad, m/rad²]."""
         curve = self.scene.curves.get(path)
-        return with_derivatives(path, length, LENGTH, self.grid, self.mechanism.period, curve)
+        return with_derivatives(path, length, LENGTH, self.grid, self.mechanism.period, curve, self.places)
 
     def stroke(self, name: str, stroke_of: Callable[[Scene, str], Stroke]) -> Stroke:
         """Return the stroke of a position by its name, as `stroke_of` of a scene."""

@@ -28,7 +28,7 @@ from linksweep.base.frozen import bare, cached_copy, cached_property, field_valu
 from linksweep.base.public.clear_calls import clear_method
 from linksweep.base.validate import UNITS, Number, Rule, choice_problems, quote, refuse
 from linksweep.engine.quantity import Table
-from linksweep.engine.run import Grid
+from linksweep.engine.run import Grid, Places
 from linksweep.mechanisms import MECHANISMS, Mechanism
 from linksweep.scene.curves.over_angle import ArrayCurve, period_of, period_of_function, turning_problems
 from linksweep.scene.curves.quick import Quick, quick_angles
@@ -270,7 +270,7 @@ class Scene(ByContent):
         """True where no parameter changes over the revolution."""
         over_angle = any(self.mechanism.index in array.dims for array in self.arrays.values())
         plain = not self._not_plain and not self.loads
-        return plain or (not (over_angle or self.functions) and self._evaluated(self.grid(1)) is self)
+        return plain or (not (over_angle or self.functions) and Revolution(self, self.grid(1)).sampled() is self)
 
     @property
     def changes_speed(self) -> bool:
@@ -293,7 +293,8 @@ class Scene(ByContent):
     def bare(self) -> Scene:
         """Scene whose arrays have no labels, but for those of its loads."""
         parts = field_values(self).items() if self.arrays else ()
-        return with_sound(self, **{name: bare(value) for name, value in parts if name != "loads"})
+        others = {name: bare(value) for name, value in parts if name not in ("loads", "mechanism")}
+        return with_sound(self, mechanism=self.mechanism.bare, **others)
 
     @cached_property
     def inputs(self) -> Inputs:
@@ -320,26 +321,23 @@ class Scene(ByContent):
         """
         return crank_grid(angles, self.period, self.mechanism.index, self.mechanism.geared)
 
-    def at(self, grid: Grid) -> Scene:
+    def at(self, grid: Grid, places: Places | None = None) -> Scene:
         """Evaluate all that changes over the revolution at the angles of a grid.
 
         Parameters
         ----------
         grid : Grid
             Angles of a sweep.
+        places : mapping of str to array of int, default None
+            Index along each design dim [1], at each angle, of the one design whose arrays are evaluated there; None for
+            all designs.
 
         Returns
         -------
         Scene
             Scene with DataArrays over these angles; the scene itself where nothing changes with them.
         """
-        return self if self.steady else self._evaluated(grid)
-
-    def _evaluated(self, grid: Grid) -> Scene:
-        revolution = Revolution(self, grid)
-        loads = tuple(load.sampled(path, revolution) for path, load in self._loads())
-        mechanism = self.mechanism.at_angles(revolution.sample_length)
-        return with_sound(self, mechanism=mechanism, omega2=revolution.omega2, alpha2=revolution.alpha2, loads=loads)
+        return self if self.steady else Revolution(self, grid, places=places).sampled()
 
     def jumps(self) -> tuple[Number, ...]:
         """List the crank angles at which forces jump.

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from linksweep.engine.run import Field
+from linksweep.engine.run import Field, Places
 from linksweep.results.cylinders.cylinder_sums import combined, sources_of
 from linksweep.results.cylinders.multi_cylinder import MultiCylinder
 from linksweep.results.peak_search.along_paths import (
@@ -46,7 +46,7 @@ from linksweep.results.peak_search.paths import (
     turns,
 )
 from linksweep.results.peak_search.singular.poles import Candidates, may_have_poles, pole_candidates
-from linksweep.scene.pairs import Array, Places, in_period, joined
+from linksweep.scene.pairs import Array, in_period, joined
 from linksweep.scene.scene import Scene
 
 

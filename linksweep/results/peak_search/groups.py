@@ -11,11 +11,11 @@ import xarray as xr
 
 from linksweep.engine.peaks.roles import WIDTHS
 from linksweep.engine.quantity import Table
-from linksweep.engine.run import Field, Fields, evaluate
+from linksweep.engine.run import Field, Fields, Places, evaluate
 from linksweep.engine.trace.plan import InputForms, Plan, plan
 from linksweep.results.peak_search.between import EVERYWHERE, ONE, PARTLY, designs_on, number_of, one_by_one
 from linksweep.results.peak_search.limits import Limits, limits_of, signals_of
-from linksweep.scene.pairs import Array, Places, different_designs, places_of, quantities_at
+from linksweep.scene.pairs import Array, changes_by_pairs, different_designs, places_of, quantities_at
 from linksweep.scene.parameters import replaced
 from linksweep.scene.scene import Scene
 
@@ -102,8 +102,8 @@ def all_at_once(scene: Scene, designs: Array) -> Group:
 @singledispatch
 def groups(scene: Any, designs: Array, at_once: int = AT_ONCE, own_at_once: int = OWN_AT_ONCE) -> Iterator[Any]:
     """Yield designs in groups small enough to be searched together."""
-    inputs, index = scene.at_one_angle.inputs, scene.mechanism.index
-    own = any(index in field.dims and len(field.dims) > 1 for field in inputs.fields.values())
+    inputs = scene.at_one_angle.inputs
+    own = _change_together(scene)
     turns = round(scene.period_of_motion / scene.mechanism.period)
     step = max(1, (min(at_once, own_at_once) if own else at_once) // turns)
     limits = _limits(scene, designs)  # of all groups at once: to find them, all numbers of all designs are read
@@ -162,6 +162,14 @@ def empty_over_all(scene: Any, names: tuple[str, ...]) -> Field:
     fields = empty(scene, names).values()
     sizes = {dim: n for field in fields for dim, n in zip(field.dims, field.values.shape, strict=True)}
     return Field(tuple(sizes), np.full(tuple(sizes.values()), np.nan))
+
+
+def _change_together(scene: Scene) -> bool:
+    """Return whether inputs change over the angle and over designs at once, those aside that are computed for pairs."""
+    first = {dim: np.zeros(1, dtype=int) for dim in scene.at_one_angle.inputs.sizes}
+    at_one_angle = scene.at(scene.grid(1), first) if changes_by_pairs(scene) else scene.at_one_angle
+    fields = at_one_angle.inputs.fields.values()
+    return any(scene.mechanism.index in field.dims and len(field.dims) > 1 for field in fields)
 
 
 def _with_own_loads(scene: Scene, places: Places) -> Group:

@@ -15,13 +15,12 @@ import numpy as np
 import xarray as xr
 
 from linksweep.base.validate import Rule, refuse
-from linksweep.engine.run import Grid
+from linksweep.engine.run import Grid, Places
+from linksweep.scene.curves.interpolation import derivative_at
 from linksweep.scene.curves.over_angle import (
     ArrayCurve,
-    at_angles,
     called,
     knots,
-    over_grid,
     period_of,
     period_of_function,
     period_problems,
@@ -37,9 +36,12 @@ JUMP = 1e-6
 
 
 def acceleration(
-    path: str, omega: Any, rule: Rule, grid: Grid, turn: float, curve: ArrayCurve | None = None
-) -> xr.DataArray:
-    """Return ω·dω/dθ [rad/s²] at the grid's angles, of a speed that is a function of theta2 or an array over it.
+    path: str, omega: Any, rule: Rule, grid: Grid, turn: float, speed: xr.DataArray, curve: ArrayCurve | None = None,
+    places: Places | None = None,
+) -> xr.DataArray:  # fmt: skip
+    """Return ω·dω/dθ [rad/s²] at the grid's angles, of a function of theta2 or an array over it; `speed` is ω there.
+
+    `curve` and `places` are as of `at_angles`.
 
     A function's errs by 1e-9 of its largest value where the function is smooth over half a degree. At a corner
     it is the mean of both sides, at a jump infinite.
@@ -47,11 +49,11 @@ def acceleration(
     Raises
     ------
     ValueError
-        For an array that does not tell its slope at these angles, and as `over_angle.at_angles`.
+        For an array that does not tell its slope at these angles, and as `over_angle.called`.
     """
     if callable(omega) and not hasattr(omega, "dims"):
         return _of_function(path, omega, rule, grid, period_of_function(omega, turn))
-    return _of_array(path, omega, rule, grid, turn, curve)
+    return _of_array(path, omega, grid, turn, speed, curve, places)
 
 
 def acceleration_problems(acceleration: xr.DataArray) -> list[str]:
@@ -95,8 +97,9 @@ def limit(column: np.ndarray, rounding: np.ndarray) -> np.ndarray:
 
 
 def _of_array(
-    path: str, omega: xr.DataArray, rule: Rule, grid: Grid, turn: float, curve: ArrayCurve | None
-) -> xr.DataArray:
+    path: str, omega: xr.DataArray, grid: Grid, turn: float, speed: xr.DataArray, curve: ArrayCurve | None,
+    places: Places | None,
+) -> xr.DataArray:  # fmt: skip
     """Differentiate the periodic spline; at the angles of a part of a turn, the spline through these alone."""
     from scipy.interpolate import CubicSpline
 
@@ -105,10 +108,10 @@ def _of_array(
     known, values = knots(omega)
     problems = period_problems(path, known, values, period_of(omega, turn))
     if not problems:
-        slope = curve.unwarned.slope(grid.angles)
+        slope = curve.slope(grid, 1, places)
     elif len(known) > 1 and np.isin(grid.angles, known).all():
-        slope = CubicSpline(known, values)(grid.angles, 1)
+        spline = CubicSpline(known, values)
+        slope = curve.over(grid, places, lambda angles, own: np.degrees(derivative_at(spline, angles, 1, own)))
     else:
         refuse([f"{problem}; or give alpha2" for problem in problems])
-    speed = at_angles(path, omega, rule, grid, curve)
-    return (speed * over_grid(np.degrees(slope), omega, grid)).transpose(*omega.dims)
+    return speed.copy(deep=False, data=(speed.variable * slope.variable).values)

@@ -10,15 +10,18 @@ from typing import Any
 import numpy as np
 
 from linksweep.base.validate import Number, Rule
-from linksweep.engine.run import Grid
+from linksweep.engine.run import Grid, Places
 from linksweep.scene.curves.acceleration import ROUNDING, STEPS, limit
 from linksweep.scene.curves.over_angle import ArrayCurve, at_angles, called, over_grid, period_of_function
 
 
 def with_derivatives(
-    path: str, value: Any, rule: Rule, grid: Grid, turn: float, curve: ArrayCurve | None = None
-) -> tuple[Number, Number, Number]:
+    path: str, value: Any, rule: Rule, grid: Grid, turn: float, curve: ArrayCurve | None = None,
+    places: Places | None = None,
+) -> tuple[Number, Number, Number]:  # fmt: skip
     """Return a function or an array of theta2 at the grid's angles, and its first two derivatives [1/rad, 1/rad²].
+
+    `curve` and `places` are as of `at_angles`.
 
     Raises
     ------
@@ -29,9 +32,8 @@ def with_derivatives(
         return _of_function(path, value, rule, grid, period_of_function(value, turn))
     array = value if "theta2" in value.coords else value.assign_coords(theta2=grid.angles)
     curve = curve or ArrayCurve(path, array, turn)
-    slopes = (np.degrees(1.0) ** order * curve.unwarned.slope(grid.angles, order) for order in (1, 2))
-    slope, curvature = (over_grid(values, array, grid).transpose(*array.dims) for values in slopes)
-    return at_angles(path, value, rule, grid, curve), slope, curvature
+    slope, curvature = (curve.slope(grid, order, places) for order in (1, 2))
+    return at_angles(path, value, rule, grid, curve, places), slope, curvature
 
 
 def _of_function(path: str, function: Any, rule: Rule, grid: Grid, period: float) -> tuple[Number, Number, Number]:

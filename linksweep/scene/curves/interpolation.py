@@ -11,6 +11,7 @@ SIAM J. Sci. Stat. Comput. 5 (1984) 300.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -46,24 +47,29 @@ def interpolation_attribute(table: dict[str, Any]) -> dict[str, Any]:
 
 @dataclass(frozen=True, eq=False)
 class PeriodicCurve:
-    """A curve through values (angle, …) at known angles [degree], which rise within one period, and round again."""
+    """A curve through values (angle, …) at known angles [degree], which rise within one period, and round again.
+
+    It is evaluated for all columns of the values, or at each angle for one of them: `columns` are their numbers,
+    row-major.
+    """
 
     known: Array
     values: Array
     period: float
     interpolation: str = CUBIC
 
-    def __call__(self, angles: Array) -> Array:
+    def __call__(self, angles: Array, columns: Array | None = None) -> Array:
         """Return values (angle, …) at any angles [degree]; at known ones, and whole periods from them, to the bit."""
-        values = self._curve(self._folded(angles))
-        place = {angle: k for k, angle in enumerate(np.mod(self.known, self.period).tolist())}
-        held = np.array([place.get(angle, -1) for angle in np.mod(angles, self.period).tolist()])
-        values[held >= 0] = self.values[held[held >= 0]]
+        values, (known, number) = self.slope(angles, 0, columns), self._in_period
+        place = np.mod(angles, self.period)
+        nearest = np.minimum(np.searchsorted(known, place), len(known) - 1)
+        held = known[nearest] == place
+        values[held] = _picked(self.values, number[nearest[held]], columns if columns is None else columns[held])
         return values
 
-    def slope(self, angles: Array, order: int = 1) -> Array:
+    def slope(self, angles: Array, order: int = 1, columns: Array | None = None) -> Array:
         """Return the slopes (angle, …) there, per degree; of a higher order the derivatives, per degree^order."""
-        return self._curve(self._folded(angles), order)
+        return derivative_at(self._curve, self._folded(angles), order, columns)
 
     @cached_property
     def overshoot(self) -> float:
@@ -78,6 +84,13 @@ class PeriodicCurve:
             beyond = np.maximum(beyond, np.maximum(between.max(axis=0) - high, low - between.min(axis=0)) - rounding)
         return float(np.max(beyond / np.maximum(high - low, rounding)))
 
+    @cached_property
+    def _in_period(self) -> tuple[Array, Array]:
+        """The known angles in [0, period), in order, and the number of the value at each."""
+        places = np.mod(self.known, self.period)
+        order = np.argsort(places)
+        return places[order], order
+
     def _folded(self, angles: Array) -> Array:
         return self.known[0] + np.mod(angles - self.known[0], self.period)
 
@@ -91,6 +104,25 @@ class PeriodicCurve:
             return CubicSpline(*closing, bc_type="periodic")
         turns = self.known - turn, self.known, self.known + turn
         return curve_through(self.interpolation, np.concatenate(turns), np.concatenate([self.values] * len(turns)))
+
+
+def derivative_at(curve: Any, places: Array, order: int, columns: Array | None) -> Array:
+    """Return a derivative (place, …) of piecewise polynomials of scipy inside their range; with `columns`, of one of
+    them at each place: the same to the bit."""
+    if columns is None:
+        return curve(places, order)
+    piece = np.clip(np.searchsorted(curve.x, places, side="right") - 1, 0, len(curve.x) - 2)
+    step, power, sums = places - curve.x[piece], 1.0, np.zeros(len(places))
+    for exponent, coefficients in enumerate(curve.c[::-1]):
+        if exponent >= order:
+            sums += _picked(coefficients, piece, columns) * power * math.perm(exponent, order)
+            power = power * step
+    return sums
+
+
+def _picked(table: Array, rows: Array, columns: Array | None) -> Array:
+    """Return rows of a table (row, …); with `columns`, of each the number in one of its columns, row-major."""
+    return table[rows] if columns is None else table.reshape(len(table), -1)[rows, columns]
 
 
 def curve_through(interpolation: str, known: Array, values: Array) -> Any:

@@ -13,9 +13,11 @@ import xarray as xr
 
 from linksweep.base.frozen import cached_beside
 from linksweep.base.validate import Rule, is_quantity, refuse, value_problems
-from linksweep.engine.run import Grid
+from linksweep.engine.run import Grid, Places
 from linksweep.scene.curves.interpolation import CUBIC, RINGING, OvershootWarning, PeriodicCurve
 
+ValuesAt = Callable[[np.ndarray, Any], np.ndarray]
+"""A function of angles [degree], and of the column of values at each, None for all, that returns values there."""
 LARGEST = 1e290
 """Values from here on are not interpolated."""
 CLOSEST = 1e-9
@@ -79,11 +81,13 @@ def period_of(value: Any, shortest: float) -> float:
     return shortest * max(np.ceil(np.ptp(value["theta2"].values) / shortest), 1.0)
 
 
-def at_angles(path: str, value: Any, rule: Rule, grid: Grid, curve: ArrayCurve | None = None) -> Any:
+def at_angles(
+    path: str, value: Any, rule: Rule, grid: Grid, curve: ArrayCurve | None = None, places: Places | None = None
+) -> Any:
     """Evaluate a function or DataArray of theta2 at the grid's angles; return any other number as it is.
 
     At angles that a DataArray does not hold its `curve` is evaluated; at angles that it holds, or that are whole
-    periods from them, its values come back to the bit.
+    periods from them, its values come back to the bit. With `places`, those of the design of each angle alone.
 
     Raises
     ------
@@ -102,13 +106,14 @@ def at_angles(path: str, value: Any, rule: Rule, grid: Grid, curve: ArrayCurve |
     if "theta2" not in value.coords:
         return _as_it_stands(path, value, grid)
     known = value["theta2"].values
-    if len(known) == len(grid.angles) and np.array_equal(known, grid.angles):
+    if places is None and len(known) == len(grid.angles) and np.array_equal(known, grid.angles):
         return value
     place = {angle: k for k, angle in enumerate(known)}
     if all(angle in place for angle in grid.angles):
-        return value.isel(theta2=[place[angle] for angle in grid.angles])
+        picked = {"theta2": [place[angle] for angle in grid.angles], **(places or {})}
+        return value.isel({dim: xr.Variable("theta2", at) for dim, at in picked.items()}, missing_dims="ignore")
     assert curve is not None, path
-    return over_grid(curve.periodic(grid.angles), value, grid)
+    return curve.at(grid, places)
 
 
 def called(path: str, function: Any, rule: Rule, angles: np.ndarray) -> xr.DataArray:
@@ -182,6 +187,23 @@ class ArrayCurve:
         """The curve, with a warning where it leaves the range of the array."""
         _warn_of_overshoot(self.path, self.unwarned.overshoot)
         return self.unwarned
+
+    def at(self, grid: Grid, places: Places | None = None) -> xr.DataArray:
+        """Return values at the angles of a grid; with `places`, of the design of each angle alone."""
+        return self.over(grid, places, self.periodic)
+
+    def slope(self, grid: Grid, order: int = 1, places: Places | None = None) -> xr.DataArray:
+        """Return derivatives at the angles of a grid [1/rad^order], as `at`."""
+        per_radian = np.degrees(1.0) ** order
+        return self.over(grid, places, lambda angles, own: per_radian * self.unwarned.slope(angles, order, own))
+
+    def over(self, grid: Grid, places: Places | None, values_at: ValuesAt) -> xr.DataArray:
+        """Return what a function of angles and columns, as those of `PeriodicCurve`, returns at those of a grid."""
+        dims = [str(dim) for dim in self.array.dims if dim != "theta2"]
+        if places is None or not dims:
+            return over_grid(values_at(grid.angles, None), self.array, grid)
+        columns = np.ravel_multi_index(tuple(places[dim] for dim in dims), tuple(self.array.sizes[dim] for dim in dims))
+        return over_grid(values_at(grid.angles, columns), self.array[dict.fromkeys(dims, 0)], grid)
 
     @property
     def overshoot(self) -> float | None:

@@ -21,13 +21,12 @@ from linksweep.base.frozen import unvalidated, with_sound
 from linksweep.base.validate import Number, Rule, quote
 from linksweep.chains.gears import geared_rows
 from linksweep.engine.quantity import Row, Table
-from linksweep.engine.run import Field, Grid, evaluate
+from linksweep.engine.run import Field, Grid, Places, evaluate
 from linksweep.engine.trace.derivatives import derivative_of, with_derivatives
 from linksweep.engine.trace.plan import plan
 from linksweep.mechanisms import Mechanism
 from linksweep.mechanisms.strokes import Stroke
 from linksweep.scene.curves.derivatives import with_derivatives as curve_with_derivatives
-from linksweep.scene.curves.over_angle import ArrayCurve, over_grid
 from linksweep.scene.curves.over_position import POSITION
 from linksweep.scene.derivatives.sloped import Sloped, slopes_of, value_of
 from linksweep.scene.dimensions import aligned
@@ -119,10 +118,10 @@ class Differentiated(Scene):
         different: dict[bytes, Any] = {np.asarray(value_of(angle)).tobytes(): angle for angle in angles}
         return tuple(different.values())
 
-    def at(self, grid: Grid) -> Scene:
-        """Evaluate all that changes over the revolution at the angles of a grid."""
-        sampled = super().at(grid)
-        return sampled if sampled is self else with_sound(sampled, sampled_slopes=tuple(_slopes(self, grid)))
+    def at(self, grid: Grid, places: Places | None = None) -> Scene:
+        """Evaluate all that changes over the revolution at the angles of a grid, each for its own design, if stated."""
+        sampled = super().at(grid, places)
+        return sampled if sampled is self else with_sound(sampled, sampled_slopes=tuple(_slopes(self, grid, places)))
 
 
 def differentiated(scene: Scene, of: tuple[str, ...], to: tuple[str, ...]) -> Differentiated:
@@ -171,9 +170,9 @@ def _turning(geared: tuple[tuple[str, Any], ...]) -> Mapping[str, Row]:
     }
 
 
-def _slopes(scene: Differentiated, grid: Grid) -> Iterator[Slope]:
-    """Yield the slopes of the inputs at the angles of a grid."""
-    revolution = SlopedRevolution(_with_slopes(scene), grid, scene)
+def _slopes(scene: Differentiated, grid: Grid, places: Places | None = None) -> Iterator[Slope]:
+    """Yield the slopes of the inputs at the angles of a grid; `places`: as of `Scene.at`."""
+    revolution = SlopedRevolution(_with_slopes(scene), grid, scene, places=places)
     values = revolution.moving.motion if {*scene.to} <= {*MOTION} else _all_inputs(revolution.sampled())
     for name, value in values.items():
         for parameter, slope in slopes_of(value).items():
@@ -235,12 +234,6 @@ class SlopedRevolution(Revolution):
         """Scene with its motion alone evaluated at the angles, with slopes."""
         return with_sound(self.scene, omega2=self.omega2, alpha2=self.alpha2)
 
-    def sampled(self) -> Scene:
-        """Return the scene with all that changes over the revolution evaluated at the angles, with slopes."""
-        loads = tuple(load.sampled(f"loads[{k}]", self) for k, load in enumerate(self.scene.loads, 1))
-        mechanism = self.mechanism.at_angles(self.sample_length)
-        return with_sound(self.scene, mechanism=mechanism, omega2=self.omega2, alpha2=self.alpha2, loads=loads)
-
     @property
     def angles(self) -> Any:
         """Angles of the grid [degree], with their slope to the crank angle."""
@@ -264,20 +257,16 @@ class SlopedRevolution(Revolution):
         if value is None or isinstance(value, Sloped | float):
             return value
         if ANGLE not in self.original.to:
-            return Sloped(value_of(Revolution(self.original.plain, self.grid).sample(path, value, rule)), {})
+            plain = Revolution(self.original.plain, self.grid, places=self.places)
+            return Sloped(value_of(plain.sample(path, value, rule)), {})
         return self._turned(*self._over_angle(path, value, rule)[:2])
 
     def sample_length(self, path: str, length: Any) -> tuple[Number, Number, Number]:
         """Return a length that changes with theta2 at the angles, and its derivatives [m/rad, m/rad²]."""
         value, slope, curvature = self._over_angle(path, length, LENGTH)
         array = self.original.curves.get(path)
-        third = 0.0 if array is None else self._third_derivative(array)
+        third = 0.0 if array is None else array.slope(self.grid, 3, self.places).variable
         return self._turned(value, slope), self._turned(slope, curvature), self._turned(curvature, third)
-
-    def _third_derivative(self, curve: ArrayCurve) -> xr.Variable:
-        """Return the third derivative of an array over theta2 at the angles [1/rad³]."""
-        values = np.degrees(1.0) ** 3 * curve.unwarned.slope(self.grid.angles, 3)
-        return over_grid(values, curve.array, self.grid).variable
 
     def stroke(self, name: str, stroke_of: Callable[[Scene, str], Stroke]) -> Stroke:
         """Return the stroke of a position by its name, its constants with slopes."""
@@ -327,7 +316,8 @@ class SlopedRevolution(Revolution):
     def _over_angle(self, path: str, value: Any, rule: Rule) -> tuple[Any, Any, Any]:
         """Return a function of theta2, or an array over it, at the angles, and two derivatives [1/rad, 1/rad²]."""
         curve, turn = self.original.curves.get(path), self.mechanism.period
-        value, slope, curvature = map(value_of, curve_with_derivatives(path, value, rule, self.grid, turn, curve))
+        own = curve_with_derivatives(path, value, rule, self.grid, turn, curve, self.places)
+        value, slope, curvature = map(value_of, own)
         return value, slope, curvature
 
     def _turned(self, value: Any, slope: Any) -> Sloped:
