@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple, TypeVar
 import numpy as np
 
 from linksweep.base.frozen import cached_beside
-from linksweep.engine.run import Field, Grid, Places, evaluate
+from linksweep.engine.run import Field, Fields, Grid, Places, evaluate
 from linksweep.engine.trace.plan import Plan, plan
 
 if TYPE_CHECKING:
@@ -59,9 +59,13 @@ class Pairs:
         forms = tuple((name, (dim,) if name in own else form) for name, form in inputs.forms)
         request = plan(self.scene.table, names, forms)
         places = places_of(self.scene.at_one_angle.inputs.sizes, self.designs) | {dim: self.sample}
-        fields = inputs_along(dim, request, inputs, places)
-        fields |= {name: Field((dim,), values) for name, values in motion.items() if name in request.inputs}
-        values = evaluate(request, fields, self.grid, {})
+        needed = [
+            (name, inputs.fields[name]) for name in inputs.fields if name in request.inputs and name not in motion
+        ]
+        alike = {name: field for name, field in needed if not field.dims}
+        changing = {name: field for name, field in needed if field.dims}
+        rows = {name: row for name, row in motion.items() if name in request.inputs}
+        values = evaluate(request, alike, _with_rows(self.grid, changing, places, rows), {})
         return np.stack([np.broadcast_to(values[name].values, self.count) for name in names])
 
 
@@ -83,6 +87,20 @@ def _inputs_at(scene: Scene, designs: Array, angles: Array, loaded: bool) -> tup
     folded, first, place = np.unique(in_period(different, scene.period), return_index=True, return_inverse=True)
     inputs = scene.at(known._replace(angles=folded, table=known.table.take(first, axis=1))).inputs
     return inputs, known._replace(angles=angles, table=known.table.take(sample, axis=1)), place[sample]
+
+
+def _with_rows(grid: Grid, fields: Fields, places: Places, rows: Mapping[str, Array]) -> Grid:
+    """Return the grid of pairs with rows for the inputs of each, fields at its places and rows: kernels read them there
+    without another copy."""
+    known, count = len(grid.table), len(grid.angles)
+    table = np.empty((known + len(fields) + len(rows), count))
+    table[:known] = grid.table
+    index = {field.dims: flat_index(field, places, count) for field in fields.values()}
+    for row, field in zip(table[known:], fields.values(), strict=False):
+        np.take(field.values.ravel(), index[field.dims], out=row, mode="clip")  # to raise takes longer; none is outside
+    for row, values in zip(table[known + len(fields) :], rows.values(), strict=True):
+        row[:] = values
+    return grid._replace(names=(*grid.names, *fields, *rows), table=table)
 
 
 @cached_beside
