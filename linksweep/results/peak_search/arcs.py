@@ -39,6 +39,8 @@ PER_ARC = 192
 """Even samples of an arc, in x."""
 NEAREST = 1e-5
 """Distance in x from the end of an arc within which rounding errors exceed any rise left to find."""
+SAME = 2e-13
+"""Difference of two angles of an arc, relative to half of it, from which on they differ by more than rounding."""
 NEIGHBOURS = np.array([-1.0, 0.0, 1.0])
 """Periods of the motion away from the nearest one in which an arc may still reach into a piece."""
 LONGEST_PIECE = 180.0
@@ -163,7 +165,16 @@ def _samples_and_cuts(group: Group, middle: Array, half: Array, at_jumps: Array,
     # no cuts near the ends: a quantity that has a mean is smooth there, and rounding spoils samples nearer to them
     shared = np.broadcast_to(np.concatenate([[-QUARTER], even[4::8], [QUARTER]]), (len(middle), len(even) // 8 + 2))
     cuts = [shared, graded[:, ::2], jumps, close[:, ::7], thinned(quick)]
-    return in_order(np.concatenate(samples, axis=1)), in_order(np.concatenate(cuts, axis=1))
+    return _once(in_order(np.concatenate(samples, axis=1))), in_order(np.concatenate(cuts, axis=1))
+
+
+def _once(x: Array) -> Array:
+    """Return samples (arc, sample) in order, those made equal whose angles differ by rounding: between several so close
+    the highest is one of rounding, and its neighbours hide a summit beyond them."""
+    sine = np.sin(x)
+    again = np.diff(sine, axis=1, prepend=-np.inf) < SAME
+    first = np.where(again, 0, np.arange(x.shape[1]))
+    return np.take_along_axis(x, np.maximum.accumulate(first, axis=1), axis=1)
 
 
 def _quick_and_even(group: Group) -> Array:

@@ -111,6 +111,7 @@ def turns(group: Any) -> Paths:
         (even[:, ::30], _graded_over_period(group, 2), jumps, close, thinned(quick)),
     )
     x, cuts = (in_order(in_period(np.concatenate(parts, axis=1), period)) for parts in (samples, edges))
+    x = distinct(x, AT_JUMP)
     before, after = neighbours(x, period)
     cuts = np.concatenate([cuts, cuts[:, :1] + period], axis=1)
     return Paths(np.arange(len(x)), x, before, after, cuts)

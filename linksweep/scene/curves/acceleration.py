@@ -21,9 +21,7 @@ from linksweep.scene.curves.over_angle import (
     ArrayCurve,
     called,
     knots,
-    period_of,
     period_of_function,
-    period_problems,
 )
 
 WIDEST = 7.25
@@ -105,13 +103,11 @@ def _of_array(
 
     omega = omega if "theta2" in omega.coords else omega.assign_coords(theta2=grid.angles)
     curve = curve or ArrayCurve(path, omega, turn)
-    known, values = knots(omega)
-    problems = period_problems(path, known, values, period_of(omega, turn))
-    if not problems:
+    if not curve.problems:
         slope = curve.slope(grid, 1, places)
-    elif len(known) > 1 and np.isin(grid.angles, known).all():
-        spline = CubicSpline(known, values)
+    elif omega.sizes["theta2"] > 1 and np.isin(grid.angles, omega["theta2"].values).all():
+        spline = CubicSpline(*knots(omega))
         slope = curve.over(grid, places, lambda angles, own: np.degrees(derivative_at(spline, angles, 1, own)))
     else:
-        refuse([f"{problem}; or give alpha2" for problem in problems])
+        refuse([f"{problem}; or give alpha2" for problem in curve.problems])
     return speed.copy(deep=False, data=(speed.variable * slope.variable).values)

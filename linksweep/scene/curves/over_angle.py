@@ -170,6 +170,12 @@ class ArrayCurve:
     interpolation: str | None = None
 
     @cached_property
+    def problems(self) -> list[str]:
+        """Why the curve does not go all the way round; none where it does."""
+        period, interpolation = period_of(self.array, self.turn), self.interpolation or CUBIC
+        return period_problems(self.path, *knots(self.array), period, interpolation)
+
+    @cached_property
     def unwarned(self) -> PeriodicCurve:
         """The curve, without a warning where it leaves the range of the array.
 
@@ -177,8 +183,7 @@ class ArrayCurve:
         """
         known, values = knots(self.array)
         period, interpolation = period_of(self.array, self.turn), self.interpolation or CUBIC
-        problems = _slope_problems(self.path, known, values)
-        refuse(problems or period_problems(self.path, known, values, period, interpolation))
+        refuse(_slope_problems(self.path, known, values) or self.problems)
         last = -1 if known[-1] - known[0] == period else None  # repeats the first
         return PeriodicCurve(known[:last], values[:last], period, interpolation)
 
