@@ -135,6 +135,8 @@ def flat_index(field: Field, places: Places, count: int) -> Array:
     """Return the row-major index into a field's values of each of `count` places."""
     if not field.dims:
         return np.zeros(count, dtype=int)
+    if len(field.dims) == 1:
+        return places[field.dims[0]]  # as it is: numpy would copy it
     return np.ravel_multi_index(tuple(places[dim] for dim in field.dims), field.values.shape)
 
 

@@ -225,7 +225,7 @@ def highest(group: Any, signals: tuple[str, ...], paths: Paths, current: Array) 
 def _search(group: Group, signals: tuple[str, ...], paths: Paths, current: Array) -> Best:
     """Return the highest of each signal on each path, without the limits at its ends."""
     count_of_paths = len(paths.x)
-    samples = 1 + (np.diff(paths.x, axis=1) > 0.0).sum(axis=1)  # others repeat a place
+    samples = _different(paths).sum(axis=1)
     values_along = _values_along(group, signals, paths)
     lanes, count, best = _opened(values_along, signals, paths)
 
@@ -288,8 +288,9 @@ def _opened(
 ) -> tuple[Array, int, Array]:
     """Return the lanes about all samples that may lead to a peak, their number, and each signal's highest sample."""
     count_of_paths, per_path = paths.x.shape
-    every = np.repeat(np.arange(count_of_paths), per_path)
-    values = values_along(every, paths.x.ravel())
+    different = _different(paths)
+    path, _ = np.nonzero(different)
+    values = values_along(path, paths.x[different])[:, np.cumsum(different) - 1]
     rows = values.reshape(len(signals), count_of_paths, per_path).swapaxes(0, 1)
     most = count_of_paths * len(signals) * (per_path // 2 + 1)  # no two neighbours are summits
     lanes = np.zeros((brackets.BRACKET_ROWS, brackets.in_blocks(most)))
@@ -297,6 +298,11 @@ def _opened(
     with np.errstate(all="ignore"):
         count = open_brackets(rows, paths.x, paths.before, paths.after, paths.ends == "meet", lanes, best)
     return lanes, count, best
+
+
+def _different(paths: Paths) -> Array:
+    """Return which samples of paths (path, sample) are at another place than the one before."""
+    return np.diff(paths.x, axis=1, prepend=-np.inf) > 0.0
 
 
 def _keep_promising(lanes: Array, count: int, peak: Array, paths: Paths, signals: int) -> int:
