@@ -16,7 +16,11 @@ from linksweep.engine.run import Grid, Places, evaluate
 from linksweep.engine.trace.plan import plan
 from linksweep.mechanisms import Mechanism
 from linksweep.mechanisms.strokes import Stroke
-from linksweep.scene.curves.acceleration import acceleration, acceleration_problems
+from linksweep.scene.curves.acceleration import (
+    acceleration_of_array,
+    acceleration_of_function,
+    acceleration_problems,
+)
 from linksweep.scene.curves.derivatives import with_derivatives
 from linksweep.scene.curves.over_angle import at_angles
 
@@ -71,9 +75,10 @@ class Revolution:
     @cached_property
     def derived_alpha2(self) -> xr.DataArray:
         """Angular acceleration ω2·dω2/dθ2 [rad/s²] of a crank whose omega2 changes with theta2."""
-        curve = self.scene.curves.get("omega2")
-        speed, turn = self.omega2, self.mechanism.period
-        return acceleration("omega2", self.scene.omega2, OMEGA2, self.grid, turn, speed, curve, self.places)
+        omega2, turn, curve = self.scene.omega2, self.mechanism.period, self.scene.curves.get("omega2")
+        if hasattr(omega2, "dims"):
+            return acceleration_of_array("omega2", omega2, self.omega2, self.grid, turn, curve, self.places)
+        return acceleration_of_function("omega2", omega2, OMEGA2, self.grid, turn)
 
     @property
     def turning(self) -> Number:

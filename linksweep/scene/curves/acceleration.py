@@ -33,36 +33,13 @@ JUMP = 1e-6
 """Least change of ω² over the least step (0.001 degree) at a jump, relative to the largest ω²."""
 
 
-def acceleration(
-    path: str, omega: Any, rule: Rule, grid: Grid, turn: float, speed: xr.DataArray, curve: ArrayCurve | None = None,
-    places: Places | None = None,
-) -> xr.DataArray:  # fmt: skip
-    """Return ω·dω/dθ [rad/s²] at the grid's angles, of a function of theta2 or an array over it; `speed` is ω there.
+def acceleration_of_function(path: str, omega: Any, rule: Rule, grid: Grid, turn: float) -> xr.DataArray:
+    """Return ω·dω/dθ [rad/s²] at the grid's angles, of a speed that is a function of theta2.
 
-    `curve` and `places` are as of `at_angles`.
-
-    A function's errs by 1e-9 of its largest value where the function is smooth over half a degree. At a corner
-    it is the mean of both sides, at a jump infinite.
-
-    Raises
-    ------
-    ValueError
-        For an array that does not tell its slope at these angles, and as `over_angle.called`.
+    It errs by 1e-9 of its largest value where the function is smooth over half a degree. At a corner it is the mean of
+    both sides, at a jump infinite. Raises ValueError as `over_angle.called`.
     """
-    if callable(omega) and not hasattr(omega, "dims"):
-        return _of_function(path, omega, rule, grid, period_of_function(omega, turn))
-    return _of_array(path, omega, grid, turn, speed, curve, places)
-
-
-def acceleration_problems(acceleration: xr.DataArray) -> list[str]:
-    """List why an acceleration cannot be that of a crank."""
-    infinite = np.isinf(acceleration.transpose("theta2", ...).values).reshape(acceleration.sizes["theta2"], -1)
-    at = acceleration["theta2"].values[infinite.any(axis=1)]
-    advice = "give alpha2, or a ramp in place of the jump"
-    return [f"omega2: jumps at theta2 = {at[0]:g} degrees; {advice}"] if len(at) else []
-
-
-def _of_function(path: str, omega: Any, rule: Rule, grid: Grid, period: float) -> xr.DataArray:
+    period = period_of_function(omega, turn)
     sides = grid.angles[:, None] + STEPS, grid.angles[:, None] - STEPS
     at = np.mod(np.stack(sides), period)
     different, place = np.unique(at, return_inverse=True)
@@ -72,6 +49,42 @@ def _of_function(path: str, omega: Any, rule: Rule, grid: Grid, period: float) -
     jumps = (abs(rise[:, -1]) > JUMP * most) & (abs(slopes[:, -1]) > 1.5 * abs(slopes[:, -2]))
     limits = np.where(jumps, np.copysign(np.inf, rise[:, -1]), limit(slopes, ROUNDING * most[:, None] / width))
     return xr.DataArray(limits, {"theta2": grid.angles}, "theta2")
+
+
+def acceleration_of_array(
+    path: str,
+    omega: xr.DataArray,
+    speed: xr.DataArray,
+    grid: Grid,
+    turn: float,
+    curve: ArrayCurve | None,
+    places: Places | None,
+) -> xr.DataArray:
+    """Return ω·dω/dθ [rad/s²] at the grid's angles, of a speed that is an array over theta2; `speed` is ω there.
+
+    dω/dθ is that of the periodic spline; at the angles of a part of a turn, of the spline through these alone. `curve`
+    and `places` are as of `at_angles`. Raises ValueError for an array that does not tell its slope at these angles.
+    """
+    from scipy.interpolate import CubicSpline
+
+    omega = omega if "theta2" in omega.coords else omega.assign_coords(theta2=grid.angles)
+    curve = curve or ArrayCurve(path, omega, turn)
+    if not curve.problems:
+        slope = curve.slope(grid, 1, places)
+    elif omega.sizes["theta2"] > 1 and np.isin(grid.angles, omega["theta2"].values).all():
+        spline = CubicSpline(*knots(omega))
+        slope = curve.over(grid, places, lambda angles, own: np.degrees(derivative_at(spline, angles, 1, own)))
+    else:
+        refuse([f"{problem}; or give alpha2" for problem in curve.problems])
+    return speed.copy(deep=False, data=(speed.variable * slope.variable).values)
+
+
+def acceleration_problems(acceleration: xr.DataArray) -> list[str]:
+    """List why an acceleration cannot be that of a crank."""
+    infinite = np.isinf(acceleration.transpose("theta2", ...).values).reshape(acceleration.sizes["theta2"], -1)
+    at = acceleration["theta2"].values[infinite.any(axis=1)]
+    advice = "give alpha2, or a ramp in place of the jump"
+    return [f"omega2: jumps at theta2 = {at[0]:g} degrees; {advice}"] if len(at) else []
 
 
 def limit(column: np.ndarray, rounding: np.ndarray) -> np.ndarray:
@@ -92,22 +105,3 @@ def limit(column: np.ndarray, rounding: np.ndarray) -> np.ndarray:
         best, error = np.where(lowest < error, chosen, best), np.minimum(lowest, error)
         column = better
     return best
-
-
-def _of_array(
-    path: str, omega: xr.DataArray, grid: Grid, turn: float, speed: xr.DataArray, curve: ArrayCurve | None,
-    places: Places | None,
-) -> xr.DataArray:  # fmt: skip
-    """Differentiate the periodic spline; at the angles of a part of a turn, the spline through these alone."""
-    from scipy.interpolate import CubicSpline
-
-    omega = omega if "theta2" in omega.coords else omega.assign_coords(theta2=grid.angles)
-    curve = curve or ArrayCurve(path, omega, turn)
-    if not curve.problems:
-        slope = curve.slope(grid, 1, places)
-    elif omega.sizes["theta2"] > 1 and np.isin(grid.angles, omega["theta2"].values).all():
-        spline = CubicSpline(*knots(omega))
-        slope = curve.over(grid, places, lambda angles, own: np.degrees(derivative_at(spline, angles, 1, own)))
-    else:
-        refuse([f"{problem}; or give alpha2" for problem in curve.problems])
-    return speed.copy(deep=False, data=(speed.variable * slope.variable).values)

@@ -16,9 +16,8 @@ from linksweep.scene.curves.over_angle import ArrayCurve, at_angles, called, ove
 
 
 def with_derivatives(
-    path: str, value: Any, rule: Rule, grid: Grid, turn: float, curve: ArrayCurve | None = None,
-    places: Places | None = None,
-) -> tuple[Number, Number, Number]:  # fmt: skip
+    path: str, value: Any, rule: Rule, grid: Grid, turn: float, curve: ArrayCurve | None, places: Places | None
+) -> tuple[Number, Number, Number]:
     """Return a function or an array of theta2 at the grid's angles, and its first two derivatives [1/rad, 1/rad²].
 
     `curve` and `places` are as of `at_angles`.

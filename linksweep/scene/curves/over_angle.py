@@ -171,7 +171,7 @@ class ArrayCurve:
 
     @cached_property
     def problems(self) -> list[str]:
-        """Why the curve does not go all the way round; none where it does."""
+        """Reasons why the curve does not go all the way round."""
         period, interpolation = period_of(self.array, self.turn), self.interpolation or CUBIC
         return period_problems(self.path, *knots(self.array), period, interpolation)
 
