@@ -193,7 +193,7 @@ class Mechanism(ByContent, ABC):
         return bare(self)
 
     @cached_property
-    def numbers(self) -> dict[str, Any]:
+    def engine_parameters(self) -> dict[str, Any]:
         """`parameters`, computed once."""
         return self.parameters()
 

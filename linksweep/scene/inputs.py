@@ -42,7 +42,7 @@ def engine_inputs(scene: Scene) -> Inputs:
 
 def _named_values(scene: Scene) -> dict[str, Any]:
     """Return the numbers of motion, machine and loads under the names that the physics takes."""
-    machine, beams = scene.mechanism.numbers, "section" in scene.motion
+    machine, beams = scene.mechanism.engine_parameters, "section" in scene.motion
     numbers = [
         scene.motion,
         machine,

@@ -59,11 +59,9 @@ class Pairs:
         forms = tuple((name, (dim,) if name in own else form) for name, form in inputs.forms)
         request = plan(self.scene.table, names, forms)
         places = places_of(self.scene.at_one_angle.inputs.sizes, self.designs) | {dim: self.sample}
-        needed = [
-            (name, inputs.fields[name]) for name in inputs.fields if name in request.inputs and name not in motion
-        ]
-        alike = {name: field for name, field in needed if not field.dims}
-        changing = {name: field for name, field in needed if field.dims}
+        fields = {name: inputs.fields[name] for name in request.inputs if name in inputs.fields and name not in motion}
+        alike = {name: field for name, field in fields.items() if not field.dims}
+        changing = {name: field for name, field in fields.items() if field.dims}
         rows = {name: row for name, row in motion.items() if name in request.inputs}
         values = evaluate(request, alike, _with_rows(self.grid, changing, places, rows), {})
         return np.stack([np.broadcast_to(values[name].values, self.count) for name in names])
@@ -95,7 +93,8 @@ def _with_rows(grid: Grid, fields: Fields, places: Places, rows: Mapping[str, Ar
     known, count = len(grid.table), len(grid.angles)
     table = np.empty((known + len(fields) + len(rows), count))
     table[:known] = grid.table
-    index = {field.dims: flat_index(field, places, count) for field in fields.values()}
+    over = {field.dims: field for field in fields.values()}
+    index = {dims: flat_index(field, places, count) for dims, field in over.items()}
     for row, field in zip(table[known:], fields.values(), strict=False):
         np.take(field.values.ravel(), index[field.dims], out=row, mode="clip")  # to raise takes longer; none is outside
     for row, values in zip(table[known + len(fields) :], rows.values(), strict=True):

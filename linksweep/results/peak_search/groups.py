@@ -22,8 +22,9 @@ from linksweep.scene.scene import Scene
 AT_ONCE = 256
 """Designs searched together whose motion repeats every turn, so that the memory for it does not grow with a study."""
 OWN_AT_ONCE = 64
-"""Designs searched together where loads over the angle have design dims: each load is sampled at all designs' angles,
-so that the memory for it grows with the square of this number, here to some 30 MB."""
+"""Designs searched together where loads change over the angle and over designs at once, as those over a position do:
+each is sampled at all designs' angles, so that the memory for it grows with the square of this number, here to some 30
+MB. Arrays alone are evaluated for each pair of both."""
 COMBINED = "_combined"
 """Dim that combines the design dims of loads over the angle."""
 
