@@ -38,6 +38,9 @@ TOGGLE, BOUND, JUMP = 0.0, 1.0, 2.0
 zeros and dips are sought on both sides; and those whose zeros alone are."""
 WIDEST = math.tan(0.3)
 """Half-width from which on a dip is as smooth as the motion of the links."""
+HARDLY_LESS = 0.9
+"""Least value of a parabola, relative to the sample in its middle, from which on a dip does not reach zero: beside a
+toggle, where a signal is steep, a dip fell by 2.3 times as much as its parabola."""
 UNLIKE = 4.0
 """Ratio of rises beside a dip, in units of those of its parabola, from which on the dip may be two."""
 SMOOTH = 0.1
@@ -81,7 +84,8 @@ def may_matter(a, f_a, b, f_b, c, f_c, kind):
     fall, rise = (f_a - f_b) / (b - a), (f_c - f_b) / (c - b)
     slope, curvature = (rise * (b - a) - fall * (c - b)) / (c - a), (fall + rise) / (c - a)
     wide = WIDEST * (1.0 + b * b)
-    return f_b - 0.25 * slope * slope / curvature < (0.5 * f_b if kind == JUMP else 2.0 * curvature * wide * wide)
+    least = f_b - 0.25 * slope * slope / curvature
+    return least < (HARDLY_LESS * f_b if kind == JUMP else 2.0 * curvature * wide * wide)
 
 
 def open_dip(dips, counts, lanes, lane, bracket, half, number, signal, owner, results):

@@ -350,3 +350,32 @@ def test_a_linkage_of_eleven_dyads_has_peaks():
     links = {name: ls.Link(length, 0.3, 1e-3) for name, length in lengths.items()}
     scene = ls.Scene(ls.Linkage(", ".join(text), ground=ground, **links), omega2=10.0)
     assert ls.peaks(scene, of=["T12"]).T12_max > 0.0
+
+
+def test_a_short_arc_beside_a_toggle_of_the_links_before_is_found():
+    """The distance from E to G is at most that of rod and output together over 0.03 degrees, 0.2 degrees from a toggle
+    of the first four links; the other arc is a third of a degree long."""
+    a, b, c, d, e, turned, rod, output, g = 1.345, 1.334, 0.677, 1.683, 0.452, -139.959, 0.722, 1.907, (-1.226, 1.015)
+    lengths = {"crank": a, "coupler": b, "rocker": c, "rod": rod, "output": output}
+    six_bar = ls.Linkage(
+        "crank A-B, coupler B-C, rocker D-C-E, rod E-F, output G-F",
+        ground={"A": (0.0, 0.0), "D": (d, 0.0), "G": g},
+        points={"E": (e, turned)},
+        branch={"C": "crossed", "F": "open"},
+        **{role: ls.Link(length, 1.0, 0.1, 0.0, 0.0) for role, length in lengths.items()},
+    )
+
+    def slack(theta2):
+        """Return by how much rod and output are longer than the distance from E to G."""
+        at_b = a * np.exp(1j * np.radians(theta2))
+        diagonal = d - at_b
+        corner = (b**2 + abs(diagonal) ** 2 - c**2) / (2.0 * b * abs(diagonal))
+        at_c = at_b + b * diagonal / abs(diagonal) * np.exp(-1j * np.arccos(corner))
+        at_e = d + e * (at_c - d) / abs(at_c - d) * np.exp(1j * np.radians(turned))
+        return rod + output - abs(at_e - complex(*g))
+
+    between = [(21.8, 21.825), (21.825, 21.85), (305.9, 306.2), (306.2, 306.5)]
+    toggles = [brentq(slack, *ends, xtol=1e-13) for ends in between]
+    limits = limits_of(ls.Scene(six_bar, omega2=1.0).unloaded)[1]
+    np.testing.assert_allclose(limits.arc_start, [toggles[::2]], rtol=0.0, atol=1e-8)
+    np.testing.assert_allclose(limits.arc_end, [toggles[1::2]], rtol=0.0, atol=1e-8)
