@@ -329,13 +329,17 @@ class Scene(ByContent):
         grid : Grid
             Angles of a sweep.
         places : mapping of str to array of int, default None
-            Index along each design dim [1], at each angle, of the one design whose arrays are evaluated there; None for
-            all designs.
+            Index along each design dim [1] of the one design that arrays are evaluated for at each angle; None: all.
 
         Returns
         -------
         Scene
             Scene with DataArrays over these angles; the scene itself where nothing changes with them.
+
+        Raises
+        ------
+        ValueError
+            For a function that fails or returns no finite numbers, and an array that has no values at these angles.
         """
         return self if self.steady else Revolution(self, grid, places=places).sampled()
 
@@ -345,8 +349,7 @@ class Scene(ByContent):
         Returns
         -------
         tuple of float or DataArray
-            Angles [degree]: of friction where a slider turns round, of pressure at dead centres, of a torsion spring at
-            180. NaN in designs that have none.
+            Angles [degree] of friction at reversals, of pressure at dead centres, of torsion springs at 180; or NaN.
         """
         return self._jumps
 
@@ -375,8 +378,7 @@ class Scene(ByContent):
         Returns
         -------
         str
-            TOML with the words of the constructors and the numbers in SI units, to the bit. Functions of theta2 are
-            written as samples, which a spline joins to within 1e-9 of their largest value.
+            TOML with numbers in SI units, to the bit; functions of theta2 as samples that a spline joins to 1e-9.
 
         Raises
         ------

@@ -166,7 +166,8 @@ def empty_over_all(scene: Any, names: tuple[str, ...]) -> Field:
 
 
 def _change_together(scene: Scene) -> bool:
-    """Return whether inputs change over the angle and over designs at once, those aside that are computed for pairs."""
+    """Return whether inputs change over the angle and over designs at once, besides arrays that are evaluated for pairs
+    of both."""
     first = {dim: np.zeros(1, dtype=int) for dim in scene.at_one_angle.inputs.sizes}
     at_one_angle = scene.at(scene.grid(1), first) if changes_by_pairs(scene) else scene.at_one_angle
     fields = at_one_angle.inputs.fields.values()

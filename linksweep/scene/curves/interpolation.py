@@ -107,8 +107,8 @@ class PeriodicCurve:
 
 
 def derivative_at(curve: Any, places: Array, order: int, columns: Array | None) -> Array:
-    """Return a derivative (place, …) of piecewise polynomials of scipy inside their range; with `columns`, of one of
-    them at each place: the same to the bit."""
+    """Return a derivative (place, …) of scipy's piecewise polynomials inside their range, of order 0 their values; with
+    `columns`, of one of them at each place: the same to the bit."""
     if columns is None:
         return curve(places, order)
     piece = np.clip(np.searchsorted(curve.x, places, side="right") - 1, 0, len(curve.x) - 2)
