@@ -26,6 +26,8 @@ from linksweep.engine.peaks.zeros import (
     place_on_lines,
 )
 
+SLIGHT = 0.5
+"""Least slope, relative to that between the samples on both sides of a zero, up to which there may be three."""
 FLAT = 1e-3
 """Half-width that is noted of a flat place: three zeros in a tenth of a degree may be taken as one."""
 
@@ -49,8 +51,9 @@ def look_for_crossings(samples, noted, half, signal, signals, crossings, counts,
             if f_i * f_k < 0.0:
                 bracket = place(samples, i), f_i, place(samples, k), f_k
                 open_crossing(crossings, counts, samples[4], samples[5], bracket, half, signal, owner, results)
-                if k < places - 1 and k <= i + 2:
-                    flat, tangent = flat_place(samples, k - 2, signal)
+                for first in range(max(k - 3, 0), min(k, places - 3) if k <= i + 2 else 0):
+                    slight = SLIGHT if first == k - 2 else 0.0
+                    flat, tangent = flat_place(samples, first, signal, slight)
                     if flat:
                         note(results, owner, tangent, half, signal, -FLAT)
 
@@ -76,9 +79,9 @@ def open_crossing(crossings, counts, lanes, lane, bracket, half, signal, owner, 
         open_zero(crossings, nth * lanes + lane, bracket, bracket[0], half, signal, owner, OPEN)
 
 
-def flat_place(samples, j, signal):
-    """Return whether a signal that crosses zero between the middle two of four samples may do so three times, and
-    where: where the slope of the cubic through them is least, near the zero, and small or of the other sign."""
+def flat_place(samples, j, signal, slight):
+    """Return whether a signal that crosses zero between two of four samples may do so three times, and where: where the
+    slope of the cubic through them is least, near the zero, and of the other sign or slight against the middle one."""
     w, x, y, z = place(samples, j), place(samples, j + 1), place(samples, j + 2), place(samples, j + 3)
     first, rise = sample(samples, j, signal), (sample(samples, j + 1, signal) - sample(samples, j, signal)) / (x - w)
     slope = (sample(samples, j + 2, signal) - sample(samples, j + 1, signal)) / (y - x)
@@ -91,7 +94,7 @@ def flat_place(samples, j, signal):
     height = first + p * (rise + q * (bend + r * change))
     side = 1.0 if slope > 0.0 else -1.0
     near = side * change > 0.0 and w < at and at < z and abs(height) < 0.6 * abs(change) * step * step * step
-    return near and -2.4 * side * change * step * step < side * least and side * least < 0.5 * side * slope, at
+    return near and -2.4 * side * change * step * step < side * least and side * least < slight * side * slope, at
 
 
 def find_zeros(crossings, counts, lanes, own, evaluate, front, results):

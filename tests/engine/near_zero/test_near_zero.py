@@ -111,6 +111,27 @@ def test_three_zeros_between_two_samples_are_found_at_the_second_look(middle, ti
     )
 
 
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_three_zeros_that_samples_show_as_one_beside_a_toggle(mirrored):
+    """Two samples on one side of zero have the first two of them between them, the third is beyond the second: the
+    signal falls steeply there, and samples are graded about the toggle, where a piece ends."""
+    zeros, toggle, side = np.array([0.0350, 0.0479, 0.0626]), 2.2, -1.0 if mirrored else 1.0
+    for scale in np.geomspace(0.2, 2.0, 60):
+
+        def height(angle, scale=scale):
+            x = side * away(angle, toggle)
+            signal = np.prod([np.tan(0.5 * x) - np.tan(0.5 * zero) for zero in scale * zeros], axis=0)
+            return np.where((x > 0.0) & (x < 2.0), signal / np.tan(0.5 * x) ** 2, np.nan)
+
+        cuts = [(toggle, 0.0)]
+        for _ in range(3):
+            angles, widths, left = near_zero(height, dips.BOUND, cuts)
+            cuts += [(at, 1e-3) for at in angles[widths < 0.0]]
+        found = np.sort(side * away(angles[widths == 0.0], toggle))
+        np.testing.assert_allclose(found, scale * zeros, rtol=1e-9)
+        assert not left
+
+
 def test_two_dips_between_two_samples_are_found_at_the_second_look():
     def height(angle):
         return (np.sin(0.5 * (angle - 1.0)) ** 2 - 1e-4) ** 2 + 1e-12
