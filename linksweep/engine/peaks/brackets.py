@@ -17,7 +17,7 @@ ROUNDS = 400
 NARROW = 1e-4
 """Width, relative to the first, down to which a bracket is refined at least: its parabola then places the peak to 1e-5
 degree."""
-NEARBY = 1e-5
+NEARBY = 1e-3
 """Distance from the middle of a bracket, relative to its width, below which no trial is made: rounding alone would tell
 its value from that in the middle, and the secant through both would allow no rise."""
 RISE = 1e-11

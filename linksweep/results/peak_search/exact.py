@@ -47,14 +47,22 @@ from linksweep.results.peak_search.between import EVERYWHERE, ONE, PARTLY, drive
 from linksweep.results.peak_search.friction.directions import divides, with_known_directions
 from linksweep.results.peak_search.groups import Group, all_at_once, assembled_groups, different, empty, groups
 from linksweep.results.peak_search.on_arcs import follow_arcs
-from linksweep.results.peak_search.paths import ASIDE, Part, about_approaches, about_breaks, short_laps, turns
+from linksweep.results.peak_search.paths import (
+    ASIDE,
+    Part,
+    about_approaches,
+    about_breaks,
+    may_hide_summits,
+    short_laps,
+    turns,
+)
 from linksweep.results.peak_search.pieces import AT_ONCE, follow_pieces, known_on_pieces, rubbing_signals
 from linksweep.results.peak_search.singular.poles import (
     designs_with_candidates,
     designs_without_jams,
     may_have_poles,
 )
-from linksweep.results.peak_search.singular.search_again import clear_of_rounding_errors
+from linksweep.results.peak_search.singular.search_again import clear_of_rounding_errors, raise_beside_breaks
 from linksweep.scene.dimensions import aligned
 from linksweep.scene.grid import NAMES as GRID_ROWS
 from linksweep.scene.pairs import Array, changes, in_period
@@ -78,7 +86,7 @@ def peaks_within(
 ) -> dict[str, SignalPeak]:
     """Return the peak of each signal between two angles [degree], ends included, of all designs or of these; angles of
     peaks lie between them, and are equal to an end where the peak stands there, but for limits at a jump."""
-    peaks = _by_paths(scene, signals, (partial(arcs_within, part),), designs)
+    peaks = _by_paths(scene, signals, part, designs)
     _raise_to_poles(scene, peaks, part, designs)
     middle, half = 0.5 * (part[0] + part[1]), 0.5 * (part[1] - part[0])
     for *_, angle, _bound, _samples in peaks.values():
@@ -110,17 +118,17 @@ def _raise_to_poles(
 
 
 def _by_paths(
-    scene: Scene, signals: tuple[str, ...], paths: tuple[PathsOf, ...] = (), designs: Array | None = None
+    scene: Scene, signals: tuple[str, ...], part: Part | None = None, designs: Array | None = None
 ) -> dict[str, SignalPeak]:
-    """Return peaks from a search along these paths, or along those for each design's kind of assembly; `designs` are
-    searched along paths alone."""
+    """Return peaks, of a part of the period or of all of it, from a search along paths; `designs` are searched along
+    paths alone."""
     peaks = {signal: nothing(field) for signal, field in empty(scene, signals).items()}
     on_pieces = {}
-    if designs is None and not paths and known_on_pieces(scene):
+    if designs is None and part is None and known_on_pieces(scene):
         on_pieces = {signal: peaks[signal] for signal in _turning(scene, signals)}
         left = _follow_on_pieces(scene, {regardless_of_jams(signal): peak for signal, peak in on_pieces.items()})
-        _follow_all(scene, on_pieces, paths, left)
-    _follow_all(scene, {signal: peaks[signal] for signal in signals if signal not in on_pieces}, paths, designs)
+        _follow_all(scene, on_pieces, None, left)
+    _follow_all(scene, {signal: peaks[signal] for signal in signals if signal not in on_pieces}, part, designs)
     if scene.quick.all:
         return peaks
     over_angle = {signal: peak for signal, peak in peaks.items() if changes(scene, (signal,))}
@@ -139,14 +147,14 @@ def _follow_on_pieces(scene: Scene, peaks: dict[str, SignalPeak]) -> Array:
     return np.setdiff1d(every, np.concatenate(followed))
 
 
-def _follow_all(
-    scene: Scene, peaks: dict[str, SignalPeak], paths: tuple[PathsOf, ...], designs: Array | None = None
-) -> None:
-    """Search along these paths of designs, or along those for each design's kind of assembly; without `designs`, of
-    all that differ."""
+def _follow_all(scene: Scene, peaks: dict[str, SignalPeak], part: Part | None, designs: Array | None = None) -> None:
+    """Search along paths through a part of the period, or through all of it, of designs; without `designs`, of all that
+    differ."""
     designs = different(scene, tuple(peaks)) if designs is None else designs
     for kind, group in assembled_groups(scene, designs) if peaks else ():
-        follow(group, peaks, paths or paths_of(scene, kind))
+        follow(group, peaks, paths_of(scene, kind) if part is None else (partial(arcs_within, part),))
+        if may_hide_summits(scene):
+            raise_beside_breaks(group, peaks, part)
         _on_own_sides(group, peaks)
 
 
@@ -165,7 +173,7 @@ def _fused_first(scene: Scene, signals: tuple[str, ...], assembly: Field) -> dic
     if len(on_arcs):
         left = follow_arcs(scene, on_arcs, {signal: peaks[signal] for signal in turning})
         for own, some in ((turning, left), (constant, on_arcs)):
-            _follow_all(scene, {signal: peaks[signal] for signal in own}, (), some)
+            _follow_all(scene, {signal: peaks[signal] for signal in own}, None, some)
     elif scene.mechanism.lap_ends:
         _follow_windows(scene, {signal: peaks[signal] for signal in turning}, partly, short_laps)
     return {signal: peaks[signal] for signal in signals}

@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from linksweep.base.degrees import OFF_ROUND
-from linksweep.engine.peaks.samples import GRADES, grades
+from linksweep.engine.peaks.samples import GRADES, HALF, grades
 from linksweep.engine.quantity import Limit
 from linksweep.engine.run import Field
 from linksweep.engine.trace.plan import plan
@@ -283,9 +283,10 @@ def on_arcs(start: Array, end: Array, dense: Array, period: float) -> Array:
     return start + length * in_order(np.concatenate([shared, np.where(along < 1.0, along, np.nan)], axis=1))
 
 
-def graded_samples(angles: Array, widths: Array) -> Array:
-    """Return samples (design, sample) [degree] graded about near-toggles (design, nth) by their widths."""
+def graded_samples(angles: Array, widths: Array, half: int = HALF) -> Array:
+    """Return samples (design, sample) [degree] graded about near-toggles (design, nth) by their widths, so many on
+    either side of each."""
     scale = np.frexp(np.nan_to_num(np.maximum(widths, 1e-30), nan=1.0))[1]
-    after = 2.0 * np.degrees(np.arctan(grades()))[np.clip(1 - scale, 0, GRADES - 1)]
+    after = 2.0 * np.degrees(np.arctan(grades(half)))[np.clip(1 - scale, 0, GRADES - 1)]
     steps = np.concatenate([-after[..., :0:-1], after[..., :-1]], axis=-1)
     return (angles[..., None] + steps).reshape(len(angles), angles.shape[1] * steps.shape[2])

@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from linksweep.base.degrees import OFF_ROUND, signed_distance
+from linksweep.engine.peaks.samples import HALF
 from linksweep.engine.roots import roots
 from linksweep.results.peak_search.approaches import (
     NARROW_NEAR_TOGGLE,
@@ -27,6 +28,7 @@ from linksweep.results.peak_search.friction.contacts import contact_angles
 from linksweep.results.peak_search.groups import Group
 from linksweep.results.peak_search.limits import graded_samples
 from linksweep.scene.pairs import Array, by_row, in_order, in_period, joined
+from linksweep.scene.scene import Scene
 
 PER_TURN = 720
 """Even samples of a turn: loads over the angle may vary as quickly as an engine's indicator diagram."""
@@ -40,11 +42,10 @@ BESIDE = np.array([ASIDE, 1e-3, 0.01, 0.1, 0.3, 1.0, 2.0, 4.0, 7.0, 11.0, 16.0, 
 """Distances from a break of the samples on either side, far enough to reach those of the fused search [degree]."""
 AT_JUMP = 0.1 * ASIDE
 """Distance from a jump within which an angle is at it, or samples are one [degree]."""
+CLOSE_BESIDE = np.array([1e-4, 3e-4, 1e-3, 3e-3, 0.01, 0.03, 0.1])
+"""Distances from a break of the samples of a window on either side [degree]."""
 SHORT_LAP, PER_LAP = 30.0, 12
 """Length of a lap that ends early [degree] below which samples of a turn may lie too far apart, and its own samples."""
-FARTHER_ASIDE = 1e-4, 0.01
-"""Distances from a break of more samples, unless the crank drives at a steady speed [degree]: those closest by may
-consist of rounding errors, and the higher side of a jump hides a summit close to the lower one."""
 KINK_STEPS = 3
 """Steps of the false position towards a kink between two samples: a search finds it from there."""
 MOST_CUTS = 200
@@ -103,7 +104,7 @@ def turns(group: Any) -> Paths:
     even, quick = (np.broadcast_to(angles, (len(group.designs), len(angles))) for angles in (even, group.quick))
     graded = _graded_over_period(group)
     at_jumps = jump_angles(group)
-    sides, jumps = beside_breaks(group, np.concatenate([at_jumps, kinks(group)], axis=1)), both_sides(at_jumps)
+    sides, jumps = both_sides(np.concatenate([at_jumps, kinks(group)], axis=1)), both_sides(at_jumps)
     close = approach_samples(group)[:, ::7]
     # a piece between cuts has 15 nodes of its own: it needs fewer cuts than a search needs samples
     samples, edges = (
@@ -152,7 +153,8 @@ def neighbours(x: Array, period: float) -> tuple[Array, Array]:
 def near_toggle_samples(group: Group) -> Array:
     """Return samples (design, sample) of one period of the motion [degree], graded about near-toggles."""
     middle = group.number(group.scene.mechanism.near_toggle_angle)
-    samples = middle[:, None] + graded_samples(*group.near_toggles())
+    half = 2 * HALF if driven_elsewhere(group.scene) else HALF  # forces over the rate of another drive vary more
+    samples = middle[:, None] + graded_samples(*group.near_toggles(), half)
     if group.limits is None:
         return samples
     even = np.arange(OFF_ROUND, group.scene.period_of_motion, EVEN_STEP)
@@ -195,11 +197,15 @@ def both_sides(angles: Array, away: float = ASIDE) -> Array:
     return np.concatenate([angles - away, angles + away], axis=1)
 
 
-def beside_breaks(group: Group, breaks: Array) -> Array:
-    """Return samples (design, sample) on both sides of each break [degree]."""
-    more = driven_elsewhere(group.scene) or group.scene.changes_speed
-    distances = (ASIDE, *FARTHER_ASIDE) if more else (ASIDE,)
-    return np.concatenate([both_sides(breaks, away) for away in distances], axis=1)
+def breaks_of(group: Group) -> Array:
+    """Return the angles (design, break) of jumps and kinks [degree]."""
+    return np.concatenate([jump_angles(group), kinks(group)], axis=1)
+
+
+def may_hide_summits(scene: Scene) -> bool:
+    """Return whether samples beside breaks may hide summits close by, of rounding errors or on the lower side of a
+    jump: unless the crank drives at a steady speed."""
+    return driven_elsewhere(scene) or scene.changes_speed
 
 
 def kinks(group: Group) -> Array:
@@ -306,9 +312,23 @@ def _approaches(group: Group) -> Approaches:
 
 def about_breaks(group: Group) -> Paths:
     """Return a window about every break of each design, wide enough to reach the samples of the fused search."""
-    angles = np.concatenate([jump_angles(group), kinks(group)], axis=1)
+    angles = breaks_of(group)
     row = np.repeat(np.arange(len(angles)), angles.shape[1])
     return _windows(row, np.nan_to_num(angles).reshape(-1, 1) + np.concatenate([-BESIDE[::-1], BESIDE]), BESIDE[-1])
+
+
+def windows_beside(group: Group, breaks: Array, part: Part | None) -> Paths:
+    """Return a window on either side of every break (design, break) [degree], clear of the break, where the design
+    moves; those inside a part, if there is one."""
+    row, nth = np.nonzero(np.isfinite(breaks))
+    steps = np.stack([-CLOSE_BESIDE[::-1], CLOSE_BESIDE])
+    x = (breaks[row, nth, None, None] + steps).reshape(-1, len(CLOSE_BESIDE))
+    row = np.repeat(row, len(steps))
+    (status,) = group.values(("status",), np.repeat(row, x.shape[1]), x.ravel())
+    inside = status.reshape(x.shape) == 0.0
+    if part is not None:
+        inside &= in_period(x - part[0], group.scene.period) <= part[1] - part[0]
+    return _windows(row, x, CLOSE_BESIDE[-1]).some(np.flatnonzero(inside.all(axis=1)))
 
 
 @singledispatch

@@ -35,6 +35,7 @@ def test_a_peak_at_once_after_the_start_of_a_piece_is_found():
         ("slider-crank with friction", 0, 130_000, 5082),  # of three trials one fell far from the top
         ("four-bar with a table", 0, 70_000, 9990),  # between the samples of a piece stood two tops of a pchip curve
         ("four-bar with a function", 0, 440_000, 7464),  # a trial fell 7e-7 of a bracket's width from its middle
+        ("four-bar with a function", 10_000_040, 0, 3079),  # as the one before it, at 2e-5 of the width
         ("four-bar with a function", 0, 450_000, 5741),  # a top between four samples that fall
         ("four-bar with a function", 1_000_029, 0, 9250),  # between two of few samples
         ("slider-crank with friction and a table", 1_000_072, 0, 5953),  # as the one before it
@@ -55,6 +56,9 @@ def test_a_peak_at_once_after_the_start_of_a_piece_is_found():
         ("Watt six-bar by its output", 7_000_051, 0, 6522),  # as the one before it
         ("Watt six-bar by its output", 7_000_065, 0, 4822),  # a trial on the higher top fell beyond a lower trial
         ("Watt six-bar by its output", 20, 1, 2596),  # beside a dead centre, at which rounding errors hid the slope
+        ("Watt six-bar by its output", 10_000_042, 0, 3824),  # beside two dead centres, one within 10° of the other
+        ("Watt six-bar by its output", 10_000_054, 0, 6491),  # two summits within half the width of a near-toggle
+        ("Watt six-bar by its output", 10_000_068, 0, 4954),  # 0.003° from a dead centre, at which rounding was as high
         ("six-bar of any lengths by its output", 20, 1, 3584),  # a limit at a toggle, tenfold within 0.01°
         ("six-bar of any lengths by its output", 7_000_017, 0, 6403),  # a limit where samples are rough up to 0.02°
         ("six-bar of any lengths by its output", 20, 1, 8383),  # a rise ten-thousandfold within 0.01° of a toggle

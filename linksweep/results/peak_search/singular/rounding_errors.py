@@ -67,6 +67,17 @@ class Singular(NamedTuple):
         row = np.searchsorted(designs, self.row[own])
         return by_row(row, self.angle[own], len(designs)), by_row(row, clear[own], len(designs))
 
+    def close_to(self, designs: Array, clear: Array, period: float) -> tuple[Array, Array]:
+        """Return `of_designs`, with the places that lie within such a distance of another: a search clear of that one
+        has not met their rounding errors yet."""
+        own = np.isin(self.row, designs)
+        row = np.searchsorted(designs, self.row[own])
+        angles, distances = (by_row(row, numbers[own], len(designs)) for numbers in (self.angle, clear))
+        away = np.abs(signed_distance(angles[:, :, None], angles[:, None, :], period))
+        reach = distances[:, None, :]
+        within = np.where(away <= reach, reach, 0.0).max(axis=-1)
+        return np.where(within > 0.0, angles, np.nan), within
+
     def as_poles(self, clear: Array) -> Candidates:
         """Return places to keep clear of as possible poles, which show at the distances where rounding errors end."""
         own = clear > 0.0

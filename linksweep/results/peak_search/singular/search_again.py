@@ -19,7 +19,7 @@ from linksweep.results.peak_search.along_paths import (
 )
 from linksweep.results.peak_search.arcs import arcs_within
 from linksweep.results.peak_search.groups import Group
-from linksweep.results.peak_search.paths import Part
+from linksweep.results.peak_search.paths import Part, breaks_of, windows_beside
 from linksweep.results.peak_search.singular.rounding_errors import (
     CLOSE_BY,
     FARTHER,
@@ -52,7 +52,24 @@ def clear_of_rounding_errors(group: Group, peaks: dict[str, SignalPeak], part: P
     for k in np.flatnonzero(clear.any(axis=1)):
         designs, peak = np.unique(places.row[clear[k] > 0.0]), {signals[k]: peaks[signals[k]]}
         raise_to_poles(group, peak, part, places.as_poles(clear[k]))
-        _raise_close_to(*places.of_designs(designs, clear[k]), group.some(designs), peak, part)
+        close = places.close_to(designs, clear[k], group.scene.period)
+        _raise_close_to(*close, group.some(designs), peak, part)
+
+
+def raise_beside_breaks(group: Group, peaks: dict[str, SignalPeak], part: Part | None) -> None:
+    """Raise peaks to those close beside breaks where the signals are smooth: samples at a break may hide these."""
+    breaks = breaks_of(group)
+    known = {signal: numbers_of(peak, group) for signal, peak in peaks.items()}
+    follow(group, peaks, (lambda _: windows_beside(group, breaks, part),))
+    for signal, peak in peaks.items():
+        closer = numbers_of(peak, group)
+        put(peak, group, known[signal])
+        higher = np.flatnonzero(closer[0] > known[signal][0])
+        if len(higher):
+            away = np.abs(signed_distance(breaks[higher], closer[1][higher, None], group.scene.period))
+            rise = (closer[0] - known[signal][0])[higher]
+            smooth = higher[are_smooth(group.some(higher), signal, closer[1][higher], np.nanmin(away, axis=1), rise)]
+            raise_to(peak, group.some(smooth), tuple(numbers[smooth] for numbers in closer))
 
 
 def _search_clear_of(
