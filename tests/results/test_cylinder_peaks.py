@@ -126,6 +126,29 @@ def test_cylinders_that_jump_together_do_so_to_the_digit():
     assert float(peaks.F_main2_bound) < 1e-9 * float(peaks.F_main2_peak)
 
 
+CLOSING = xr.DataArray([-5000.0, 0.0, 300.0], {"position": [0.0, 0.012, 0.03]}, "position")
+ON_STROKE = ls.Load("slider", force=CLOSING, over="slider.to_end", while_="closing", interpolation="step")
+RUBBING = replace(ENGINE, mechanism=replace(ENGINE.mechanism, offset=0.0185, friction=0.05))
+JUMPING = {
+    "torsion spring": (replace(ENGINE, loads=[ls.TorsionSpring("ground", "crank", 30.0, 40.0)]), [0], [0], ["T12"]),
+    "over the stroke": (replace(ENGINE, loads=[ON_STROKE]), [0, 137.5, 540], [0, 20, -50], ["T12", "power"]),
+    "gas and friction": (RUBBING, [90, 360], [0, 90], ["F_main1", "F_main2", "F_main3"]),
+}
+
+
+@pytest.mark.parametrize(("engine", "cranks", "banks", "names"), JUMPING.values(), ids=JUMPING)
+def test_a_sweep_at_the_angle_of_a_peak_at_a_jump_has_its_value(engine, cranks, banks, names):
+    machine = ls.MultiCylinder(engine, cranks, banks, [0.1 * k for k in range(len(cranks))])
+    result, jumps = ls.peaks(machine, of=names), 0
+    for name in names:
+        for end in ("peak",) if f"{name}_peak_at" in result else ("max", "min"):
+            at, peak = float(result[f"{name}_{end}_at"]), float(result[f"{name}_{end}"])
+            there, *beside = machine.sweep([at, at - 3e-9, at + 3e-9], of=[name])[name].values
+            assert there == pytest.approx(peak, rel=1e-9)
+            jumps += np.ptp(beside) > 1e-3 * abs(peak)
+    assert jumps
+
+
 @pytest.mark.parametrize("mains", [(), (-0.25, -0.06, 0.02, 0.15)])
 def test_main_bearings_hold_the_throws_in_balance(mains):
     """Forces and their moments about the axes square to the shaft are those of the throws, at every angle."""

@@ -7,7 +7,7 @@ never all assembled for a whole cycle.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -20,6 +20,9 @@ from linksweep.results.peak_search.along_paths import (
     SignalPeak,
     follow,
     nothing,
+    numbers_of,
+    on_own_side,
+    put,
     raise_to_poles,
     with_unknown_bound,
 )
@@ -73,9 +76,18 @@ class Cylinders(NamedTuple):
         return self._replace(each=tuple(group.some(rows) for group in self.each))
 
     def values(self, names: tuple[str, ...], rows: Array, angles: Array) -> Array:
-        """Return values (names, pairs) of sums at pairs of a design, by its row, and an angle [degree]."""
+        """Return values (names, pairs) of sums at pairs of a design, by its row, and an angle [degree], or beside it
+        where a cylinder jumps there."""
+        return self._sums(names, rows, self._beside_jumps(rows, angles))
+
+    def of(self, name: str, rows: Array) -> Callable[[Array, Array], Array]:
+        """Return the function that evaluates a sum of some of the designs in these rows at an angle [degree] of each,
+        as a sweep does: at a jump, too."""
+        return lambda which, angles: self._sums((name,), rows[which], angles)[0]
+
+    def _sums(self, names: tuple[str, ...], rows: Array, angles: Array) -> Array:
         rules, throws, period = self.machine.rules, self.machine.throws, self.machine.period
-        sources, angles = sources_of(names, rules), self._beside_jumps(rows, angles)
+        sources = sources_of(names, rules)
         own = [
             group.values(sources, rows, in_period(angles + throw.ahead, period))
             for group, throw in zip(self.each, throws, strict=True)
@@ -162,4 +174,13 @@ def exact_peaks_of_sums(machine: MultiCylinder, signals: tuple[str, ...]) -> dic
         follow(group, peaks, paths)
         if may_have_poles(machine.engine, signals):
             raise_to_poles(group, peaks)
+        _on_own_sides(group, peaks)
     return peaks if machine.engine.quick.all else {signal: with_unknown_bound(peak) for signal, peak in peaks.items()}
+
+
+def _on_own_sides(group: Cylinders, peaks: dict[str, SignalPeak]) -> None:
+    """Move the angles of peaks that are limits at a jump to the side that has these values in a sweep."""
+    rows = np.arange(len(group.designs))
+    for signal, peak in peaks.items():
+        value, angle, *others = numbers_of(peak, group)
+        put(peak, group, (value, on_own_side(group.of(signal, rows), angle, value, group.machine.period), *others))
