@@ -103,6 +103,20 @@ def test_the_flywheel_keeps_the_speed_by_the_equation_of_motion(machine):
     assert 0.5 * (speed.max() + speed.min()) == pytest.approx(ENGINE.omega2, rel=1e-4)
 
 
+def test_means_over_jamming_friction_have_no_bound():
+    """Beside a jam T12 grows as 1/(θ − θ_jam), power likewise: neither they nor their squares have an integral there,
+    as those of one scene have none; the shaking force has no pole."""
+    jamming = replace(ENGINE, loads=(), mechanism=replace(ENGINE.mechanism, friction=4.0))
+    means = ["T12_mean", "T12_rms", "power_mean", "Fs_mean"]
+    for machine in (ls.MultiCylinder(jamming, [0]), ls.MultiCylinder(jamming, [0, 100])):
+        peaks = ls.peaks(machine, of=means)
+        assert [float(abs(peaks[name])) for name in means[:3]] == [np.inf] * 3
+        assert float(peaks.Fs_mean) < np.inf
+        assert int(peaks.status) == 3
+        duty = ls.duty(machine)
+        assert float(abs(duty.effort_mean)) == float(duty.effort_rms) == np.inf
+
+
 def test_each_cylinder_has_the_pin_forces_of_one():
     result, one = ls.peaks(FOUR, of=["F32", "F12_mean", "T12"]), ls.peaks(ENGINE, of=["F32", "F12_mean"])
     assert result.F32_peak.dims == ("cylinder",)

@@ -42,7 +42,7 @@ from linksweep.results.peak_search.paths import (
     Paths,
     about_approaches,
     distinct,
-    jump_angles,
+    listed_jumps,
     moved_aside,
     neighbours,
     reversals,
@@ -101,9 +101,10 @@ class Cylinders(NamedTuple):
         return np.where(np.max([one.assembly() for one in self.each], axis=0) > EVERYWHERE, NEVER, EVERYWHERE)
 
     def _beside_jumps(self, rows: Array, angles: Array) -> Array:
-        """Return angles with those at a jump moved to its nearer side: cylinders that jump together then all do."""
+        """Return angles with those at a jump moved to its nearer side: cylinders that jump together then all do. Where
+        friction begins to jam one its forces grow without bound, and means need all samples as they are."""
         for one, ahead in self.by_cylinder():
-            for jump in jump_angles(one).T:
+            for jump in np.concatenate([listed_jumps(one), reversals(one)], axis=1).T:
                 angles = moved_aside(angles, jump[rows] - ahead, self.machine.period)
         return angles
 
