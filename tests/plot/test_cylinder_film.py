@@ -79,6 +79,12 @@ def test_banks_share_one_crank():
     assert left < 0.0 < right
 
 
+def test_places_that_differ_by_rounding_share_one_crank():
+    machine = ls.MultiCylinder(ENGINE, [0, 0, 180], [45, -45, 45], positions=[0.3, 0.1 + 0.2, 0.5])
+    first, second, _ = ls.plot.animate(machine, frames=2).figure.axes
+    assert [ax.get_title(loc="right") for ax in (first, second)] == ["1, 2", "3"]
+
+
 def arrows_of_guides(film, k):
     """Return the arrow (x, y) of F43 of each cylinder in frame k."""
     film.show(k)

@@ -181,6 +181,16 @@ def test_main_bearings_hold_the_throws_in_balance(mains):
         np.testing.assert_allclose(np.array(machine.mains) @ carried, moment, rtol=1e-9, atol=1e-6)
 
 
+def test_no_main_bearing_lies_between_places_that_differ_by_rounding():
+    """0.1 + 0.2 is not 0.3 in the last digit; places 1e-6 m apart are two."""
+    vee = ls.MultiCylinder(ENGINE, [0, 0, 180], [45, -45, 45], positions=[0.3, 0.1 + 0.2, 0.5])
+    np.testing.assert_allclose(vee.mains, [0.2, 0.4, 0.6], rtol=1e-14)
+    shares = [[0.5, 0.5, 0.0], [0.5, 0.5, 0.0], [0.0, 0.5, 0.5]]
+    np.testing.assert_allclose([throw.shares for throw in vee.throws], shares, atol=1e-14)
+    assert ls.MultiCylinder(ENGINE, [0, 0], positions=[0.3, 0.1 + 0.2]).mains == ()
+    assert len(ls.MultiCylinder(ENGINE, [0, 0], positions=[0.3, 0.300001]).mains) == 3
+
+
 def test_designs_go_along():
     speeds = xr.DataArray([100.0, 200.0], {"speed": [1, 2]}, "speed")
     peaks = ls.peaks(replace(FOUR, engine=replace(ENGINE, omega2=speeds)), of=["Fs", "T12", "F32"])

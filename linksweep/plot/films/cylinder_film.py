@@ -94,9 +94,9 @@ def _panels(machine: MultiCylinder) -> tuple[Figure, list[Axes], Axes]:
     """Return a figure, the axes of each cylinder, which those on one throw share, and those of the torque."""
     from matplotlib.figure import Figure
 
-    places = sorted({*machine.positions})
+    places = sorted({*machine.throw_positions})
     width, height = film_frames.SIZE
     figure = Figure((max(width, WIDTH * len(places)), height), film_frames.DPI, layout="constrained")
     grid = figure.add_gridspec(2, len(places), height_ratios=(2.0, 1.0))
     throws = {z: figure.add_subplot(grid[0, k]) for k, z in enumerate(places)}
-    return figure, [throws[z] for z in machine.positions], figure.add_subplot(grid[1, :])
+    return figure, [throws[z] for z in machine.throw_positions], figure.add_subplot(grid[1, :])

@@ -5,6 +5,7 @@ Equations and source: `linksweep.results.cylinders.cylinder_sums`.
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -43,6 +44,8 @@ from linksweep.scene.pairs import changes
 from linksweep.scene.scene import Scene
 
 ANGLE, LENGTH = Rule("angle"), Rule("length")
+ONE_THROW = 1e-9
+"""Distance between cylinders, relative to the largest from z = 0, up to which they are on one throw."""
 SHAKING = ("T12", "Fsx", "Fsy", "Fs", "Ms", "Msx", "Msy")
 
 
@@ -64,7 +67,8 @@ class MultiCylinder(ByContent):
         Position of each cylinder along the crankshaft [m], z pointing towards the viewer; () for 0.
     main_positions : sequence of float, default ()
         Positions of the main bearings along the crankshaft [m], in order, with every cylinder between two of them; ()
-        for halfway between neighbouring throws, and as far outside the first and the last.
+        for halfway between neighbouring places of cylinders, and as far outside the first and the last. Places that
+        differ by rounding are one.
 
     Raises
     ------
@@ -163,7 +167,15 @@ class MultiCylinder(ByContent):
     @cached_property
     def mains(self) -> tuple[float, ...]:
         """Places of the main bearings along the crankshaft [m], in order; () if neither they nor throws have places."""
-        return tuple(self.main_positions) or _halfway(sorted({*self.positions}))
+        return tuple(self.main_positions) or _halfway(sorted({*self.throw_positions}))
+
+    @cached_property
+    def throw_positions(self) -> tuple[float, ...]:
+        """Position of each cylinder's throw along the crankshaft [m]: places that differ by rounding are one."""
+        throws, least = list[float](), ONE_THROW * max(map(abs, self.positions))
+        for z in sorted(self.positions):
+            throws += [z] if not throws or z - throws[-1] > least else []
+        return tuple(throws[bisect_right(throws, z) - 1] for z in self.positions)
 
     @cached_property
     def throws(self) -> tuple[Throw, ...]:
