@@ -368,7 +368,8 @@ def _bound(peak: SignalPeak, quantity: Quantity) -> Field:
     value, bound = peak.value.values, peak.bound.values
     with np.errstate(invalid="ignore"):
         larger = bound / (np.sqrt(value + bound) + np.sqrt(value))
-    return Field(peak.value.dims, np.where(bound == 0.0, 0.0, larger))  # also of a force that is 0 everywhere
+    # 0 also of a force that is 0 everywhere; inf of one that cannot be followed
+    return Field(peak.value.dims, np.where((bound == 0.0) | np.isinf(bound), bound, larger))
 
 
 def _largest(*values: np.ndarray) -> np.ndarray:

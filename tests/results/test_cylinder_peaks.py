@@ -181,6 +181,20 @@ def test_main_bearings_hold_the_throws_in_balance(mains):
         np.testing.assert_allclose(np.array(machine.mains) @ carried, moment, rtol=1e-9, atol=1e-6)
 
 
+def test_bounds_are_unknown_of_what_a_function_that_cannot_be_followed_changes_alone():
+    """The shaking force and its moment depend on no load."""
+
+    def jagged(theta2):
+        return 1e5 + 5e4 * np.round(20.0 * np.cos(np.radians(theta2)) + 3.0 * np.sin(np.radians(1331.0 * theta2)))
+
+    engine = replace(ENGINE, loads=[ls.GasPressure(0.08, jagged)])
+    machine = ls.MultiCylinder(engine, [0], positions=[0.0], main_positions=[-0.1, 0.1])
+    peaks = ls.peaks(machine, of=["T12_bound", "F_main1_bound", "F12_bound", "Fs", "Fs_bound", "Ms", "Ms_bound"])
+    assert float(peaks.T12_bound) == float(peaks.F_main1_bound) == float(peaks.F12_bound[0]) == np.inf
+    assert float(peaks.Fs_bound) < 1e-10 * float(peaks.Fs_peak)
+    assert float(peaks.Ms_bound) < 1e-10 * float(peaks.Ms_peak)
+
+
 def test_no_main_bearing_lies_between_places_that_differ_by_rounding():
     """0.1 + 0.2 is not 0.3 in the last digit; places 1e-6 m apart are two."""
     vee = ls.MultiCylinder(ENGINE, [0, 0, 180], [45, -45, 45], positions=[0.3, 0.1 + 0.2, 0.5])

@@ -49,7 +49,7 @@ from linksweep.results.peak_search.paths import (
     turns,
 )
 from linksweep.results.peak_search.singular.poles import Candidates, may_have_poles, pole_candidates
-from linksweep.scene.pairs import Array, in_period, joined
+from linksweep.scene.pairs import Array, changes, in_period, joined
 from linksweep.scene.scene import Scene
 
 
@@ -176,7 +176,10 @@ def exact_peaks_of_sums(machine: MultiCylinder, signals: tuple[str, ...]) -> dic
         if may_have_poles(machine.engine, signals):
             raise_to_poles(group, peaks)
         _on_own_sides(group, peaks)
-    return peaks if machine.engine.quick.all else {signal: with_unknown_bound(peak) for signal, peak in peaks.items()}
+    if machine.engine.quick.all:
+        return peaks
+    over_angle = [signal for signal in peaks if changes(machine.engine, sources_of((signal,), machine.rules))]
+    return peaks | {signal: with_unknown_bound(peaks[signal]) for signal in over_angle}
 
 
 def _on_own_sides(group: Cylinders, peaks: dict[str, SignalPeak]) -> None:
