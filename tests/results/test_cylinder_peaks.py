@@ -127,6 +127,14 @@ def test_each_cylinder_has_the_pin_forces_of_one():
     assert result.T12_max.dims == ()
 
 
+@pytest.mark.parametrize("bank", [0.0, 38.3])
+def test_angles_of_pin_forces_lie_in_the_cycle(bank):
+    """Gas fires at 90 degrees of a cylinder's own crank, and loads its pin most: at 0 of the engine's, not at 720,
+    where rounding puts that cylinder ahead by an ulp more."""
+    machine = ls.MultiCylinder(replace(ENGINE, gravity=(0.0, 0.0)), [90.0 + bank], [bank])
+    assert ls.peaks(machine, of=["F32"]).F32_peak_at.values.tolist() == [0.0]
+
+
 def test_cylinders_that_jump_together_do_so_to_the_digit():
     """One fires as another turns round below: what is between the two jumps is rounding, and no load.
 

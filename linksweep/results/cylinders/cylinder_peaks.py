@@ -9,6 +9,7 @@ from linksweep.base.validate import name_problems
 from linksweep.results.cylinders.cylinders_between import exact_peaks_of_sums
 from linksweep.results.cylinders.multi_cylinder import SHAKING, MultiCylinder, attributes_of
 from linksweep.results.dataset import design_coordinates, joined
+from linksweep.results.peak_search.along_paths import angle_in_period
 from linksweep.results.peak_search.limits import assembly_of
 from linksweep.results.peak_search.quadrature import means
 from linksweep.results.scene_peaks import (
@@ -73,4 +74,4 @@ def _of_pins(machine: MultiCylinder, names: list[str]) -> xr.Dataset:
 def _shifted(peaks_ds: xr.Dataset, ahead: float, period: float) -> xr.Dataset:
     """Return a cylinder's peaks with their angles counted by the engine's crank."""
     at = {name: angle for name, angle in peaks_ds.data_vars.items() if str(name).endswith("_at")}
-    return peaks_ds.assign({name: ((angle - ahead) % period).assign_attrs(angle.attrs) for name, angle in at.items()})
+    return peaks_ds.assign({n: a.copy(data=angle_in_period(a.values - ahead, period)) for n, a in at.items()})
