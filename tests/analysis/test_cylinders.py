@@ -130,6 +130,22 @@ def test_designs_are_batched():
             "bank_angles has 3 numbers: must have one for each of 2",
         ),
         (lambda: ls.MultiCylinder(ENGINE, [0], positions=[np.nan]), "positions[1] = nan m: must be finite"),
+        (
+            lambda: ls.MultiCylinder(ENGINE, {0, 180}),
+            "must be a list of numbers, one for each cylinder, in their order",
+        ),
+        (lambda: ls.MultiCylinder(ENGINE, {0: 1, 180: 2}), "crank_angles = {0: 1, 180: 2}: must be a list of numbers"),
+        (lambda: ls.MultiCylinder(ENGINE, b"ab"), "crank_angles = b'ab': must be a list of numbers"),
+        (lambda: ls.MultiCylinder(ENGINE, np.array(90.0)), "crank_angles = array(90.): must be a list of numbers"),
+        (
+            lambda: ls.MultiCylinder(ENGINE, [None, 0]),
+            "crank_angles[1] = None: must be a number in degrees, the same for all designs",
+        ),
+        (
+            lambda: ls.MultiCylinder(ENGINE, [0, 90], positions=[0, xr.DataArray([0.0, 0.1], dims="design")]),
+            "must be a number in m, the same for all designs",
+        ),
+        (lambda: ls.MultiCylinder(ENGINE, [[0, 90], 0]), "crank_angles[1] = [0, 90]: must be a number in degrees, the"),
         (lambda: ls.MultiCylinder(replace(ENGINE, drive="coupler"), [0]), 'engine.drive = "coupler": must be "crank"'),
         (
             lambda: ls.MultiCylinder(replace(ENGINE, omega2=lambda theta2: 100.0 + np.cos(np.radians(theta2))), [0]),
@@ -140,6 +156,13 @@ def test_designs_are_batched():
 def test_refusals(call, message):
     line = refusal(call)[0]
     assert message in line
+
+
+def test_each_wrong_parameter_has_a_line():
+    lines = refusal(ls.MultiCylinder, SCENE, ["x", 0], {1, 2}, [0.0])
+    assert [line.split()[0] for line in lines] == ["engine", "crank_angles[1]", "bank_angles", "positions"]
+    lines = refusal(ls.MultiCylinder, ENGINE, 0.0, "45", [0.0, 0.3], [0.2, 0.1])
+    assert [line.split()[0] for line in lines] == ["crank_angles", "bank_angles", "main_positions"]
 
 
 def test_what_needs_a_scene_states_that_several_cylinders_have_none():

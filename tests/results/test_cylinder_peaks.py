@@ -15,6 +15,7 @@ CRANK, ROD = ENGINE.mechanism.crank, ENGINE.mechanism.rod
 PLACES = [-0.15, -0.05, 0.05, 0.15]
 FIRING = [0, 540, 180, 360]
 FOUR = ls.MultiCylinder(ENGINE, FIRING, positions=PLACES)
+ONE = ls.MultiCylinder(ENGINE, [0])
 TWIN = ls.MultiCylinder(ENGINE, [0, 450], bank_angles=[45, -45], positions=[-0.01, 0.01])
 MACHINES = {"inline four": FOUR, "V-twin": TWIN}
 NAMES = ("T12", "Fsx", "Fsy", "Ms", "F12x", "F12y")
@@ -237,6 +238,14 @@ def test_designs_that_move_over_part_of_a_turn_have_no_sums():
         (lambda: ls.peaks(FOUR, of=["F32x"]), "of: nothing is named 'F32x'; did you mean \"F32\"?"),
         (lambda: ls.peaks(FOUR, theta2=720), "theta2 = 720: must be left out: peaks of several cylinders are exact"),
         (lambda: FOUR.sweep(of=["F_mian1"]), "of: nothing is named 'F_mian1'; did you mean \"F_main1\"?"),
+        (
+            lambda: ls.peaks(ONE, of="F_main1"),
+            "of = 'F_main1': places of the main bearings are unknown; give two places",
+        ),
+        (
+            lambda: ONE.sweep(of=["F_main2x"]),
+            "of = 'F_main2x': places of the main bearings are unknown; give two places",
+        ),
         (lambda: ls.sweep(FOUR), "scene is a MultiCylinder: must be a Scene, such as its engine"),
         (lambda: ls.breakdown(FOUR, "F32"), "scene is a MultiCylinder: must be a Scene, such as its engine"),
         (lambda: ls.flywheel(FOUR, fluctuation=2.0), "fluctuation = 2.0: must be less than 2"),

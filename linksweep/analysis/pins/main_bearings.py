@@ -24,7 +24,7 @@ from linksweep.base.degrees import cos_sin
 from linksweep.base.validate import count_problems, refuse
 from linksweep.results.cylinders import cylinders_between  # noqa: F401  (registers the sums that integrals are of)
 from linksweep.results.cylinders.cylinder_sums import main
-from linksweep.results.cylinders.multi_cylinder import MultiCylinder
+from linksweep.results.cylinders.multi_cylinder import NO_MAINS, MultiCylinder
 from linksweep.results.dataset import by_command, joined
 
 FRAMES = ("ground", "journal")
@@ -34,12 +34,11 @@ MAIN_TEXTS = TEXTS | {
     "Fy": ("N", "force of the main bearing on the crankshaft, component along the y axis of the frame"),
     "rotation_speed": ("rad/s", "angular velocity of the crankshaft, positive counter-clockwise"),
 }
-NO_MAINS = "main_positions: places of the main bearings are unknown; give two places or more, main_positions=[...]"
 
 
 def main_bearings(machine: MultiCylinder, pins: Mapping[str, Bearing] | None, theta2: int) -> xr.Dataset:
     """Return loads, rotation, friction and life of main bearings, as `linksweep.bearings` does of pins."""
-    refuse(count_problems("theta2", theta2) + ([] if machine.mains else [NO_MAINS]))
+    refuse(count_problems("theta2", theta2) + ([] if machine.mains else [f"main_positions: {NO_MAINS}"]))
     mains = {main(k): f"F_{main(k)}" for k in range(1, len(machine.mains) + 1)}
     refuse(bearing_problems(pins, mains, machine.engine))
     fitted = {name: (pins or {}).get(name, Bearing()) for name in mains}

@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from linksweep.base.validate import name_problems
 from linksweep.results.cylinders.cylinders_between import exact_peaks_of_sums
-from linksweep.results.cylinders.multi_cylinder import SHAKING, MultiCylinder, attributes_of
+from linksweep.results.cylinders.multi_cylinder import SHAKING, MultiCylinder, attributes_of, quantity_problems
 from linksweep.results.dataset import design_coordinates, joined
 from linksweep.results.peak_search.along_paths import angle_in_period
 from linksweep.results.peak_search.limits import assembly_of
@@ -35,7 +34,7 @@ def peaks_of_cylinders(machine: MultiCylinder, of: list[str] | None) -> xr.Datas
     sums = parsed_requests(
         machine.quantity,
         [name for name in names if name not in pins],
-        lambda name: name_problems("of", name, [*machine.quantity, *machine.pin_forces]),
+        lambda name: quantity_problems(machine, "of", name, *machine.pin_forces),
     )
     ds = _of_sums(machine, sums)
     if pins:

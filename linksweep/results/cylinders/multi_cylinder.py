@@ -6,10 +6,10 @@ Equations and source: `linksweep.results.cylinders.cylinder_sums`.
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import pairwise
+from itertools import chain, pairwise
 from typing import Any
 
 import numpy as np
@@ -44,6 +44,14 @@ from linksweep.scene.pairs import changes
 from linksweep.scene.scene import Scene
 
 ANGLE, LENGTH = Rule("angle"), Rule("length")
+LISTS = {
+    "crank_angles": (ANGLE, "cylinder"),
+    "bank_angles": (ANGLE, "cylinder"),
+    "positions": (LENGTH, "cylinder"),
+    "main_positions": (LENGTH, "main bearing"),
+}
+"""Rule of each list's numbers, and what each number is of."""
+NO_MAINS = "places of the main bearings are unknown; give two places or more, main_positions=[...]"
 ONE_THROW = 1e-9
 """Distance between cylinders, relative to the largest from z = 0, up to which they are on one throw."""
 SHAKING = ("T12", "Fsx", "Fsy", "Fs", "Ms", "Msx", "Msy")
@@ -104,25 +112,26 @@ class MultiCylinder(ByContent):
     main_positions: Sequence[float] = ()
 
     def __post_init__(self) -> None:
-        refuse(_engine_problems(self.engine))
-        for word, rule in {"crank_angles": ANGLE, "bank_angles": ANGLE, "positions": LENGTH}.items():
-            refuse(self._take(word, rule, "cylinder"))
-        refuse(self._take("main_positions", LENGTH, "main bearing") or self._main_problems())
+        lists = {word: _numbers_in(getattr(self, word), rule) for word, (rule, _) in LISTS.items()}
+        count = len(lists["crank_angles"] or ())
+        lists |= {word: (0.0,) * count for word in ("bank_angles", "positions") if lists[word] == ()}
+        problems = {word: self._list_problems(word, numbers, count) for word, numbers in lists.items()}
+        normalise(self, **{word: numbers for word, numbers in lists.items() if numbers is not None})
+        places = [] if problems["positions"] or problems["main_positions"] else self._main_problems()
+        refuse([*_engine_problems(self.engine), *chain(*problems.values()), *places])
 
-    def _take(self, word: str, rule: Rule, owner: str) -> list[str]:
-        """Store one number for each owner as a tuple, and return its problems."""
-        value: Any = getattr(self, word)
-        if is_array(value) or isinstance(value, str) or not isinstance(value, Iterable):
-            return [f"{word} = {quote(value)}: must be a list of numbers, one for each {owner}"]
-        numbers = tuple(to_float64(number, rule.kind) for number in value)
-        if word in ("bank_angles", "positions"):
-            numbers = numbers or (0.0,) * len(self.crank_angles)
-        normalise(self, **{word: numbers})
-        problems = [] if numbers or owner != "cylinder" else [f"{word} is empty: give one for each cylinder"]
-        if len(numbers) != len(self.crank_angles) and owner == "cylinder":
-            count = f"{word} has {len(numbers)} numbers"
-            problems.append(f"{count}: must have one for each of {len(self.crank_angles)} cylinders")
-        return problems + [p for k, n in enumerate(numbers, 1) for p in _plain_problems(f"{word}[{k}]", n, rule)]
+    def _list_problems(self, word: str, numbers: tuple[Any, ...] | None, count: int) -> list[str]:
+        """Return the problems of numbers for each of `count` cylinders, or of mains, which may be any number."""
+        rule, owner = LISTS[word]
+        if numbers is None:
+            wrong = f"{word} = {quote(getattr(self, word))}"
+            return [f"{wrong}: must be a list of numbers, one for each {owner}, in their order"]
+        if word == "crank_angles" and not numbers:
+            return [f"{word} is empty: give one for each {owner}"]
+        miscounted = owner == "cylinder" and count and len(numbers) != count
+        counts = [f"{word} has {len(numbers)} numbers: must have one for each of {count} cylinders"]
+        each = [p for k, n in enumerate(numbers, 1) for p in _plain_problems(f"{word}[{k}]", n, rule)]
+        return [*(counts if miscounted else ()), *each]
 
     def _main_problems(self) -> list[str]:
         """Return the problems of the places of the main bearings."""
@@ -230,7 +239,7 @@ class MultiCylinder(ByContent):
         """
         word, quantities = either(of=of, outputs=outputs)
         names = list(SHAKING) if quantities is None else requested(word, quantities)
-        refuse([problem for name in names for problem in name_problems(word, name, [*self.quantity, "status"])])
+        refuse([p for name in names for p in quantity_problems(self, word, name, "status")])
         grid = crank_grid(theta2, self.period)
         needed = dict.fromkeys((*names, "status"))
         sources = sources_of(needed, self.rules)
@@ -252,6 +261,13 @@ class MultiCylinder(ByContent):
         quantity, scene = self.quantity[name], self.engine
         cycle = scene.period if changes(scene, sources_of((name,), self.rules)) else scene.period_of_motion
         return {"units": quantity.units, "long_name": quantity.long_name, CYCLE: cycle}
+
+
+def quantity_problems(machine: MultiCylinder, path: str, name: Any, *others: str) -> list[str]:
+    """Return a problem unless a name is a quantity of an engine, or one of the others; of mains, why there are none."""
+    if not machine.mains and str(name).startswith("F_main"):
+        return [f"{path} = {quote(name)}: {NO_MAINS}"]
+    return name_problems(path, name, [*machine.quantity, *others])
 
 
 def attributes_of(machine: MultiCylinder, command: str) -> dict[str, Any]:
@@ -301,6 +317,17 @@ def _engine_problems(engine: Any) -> list[str]:
     return problems + ([wrong] if engine.drive != "crank" else [])
 
 
+def _numbers_in(value: Any, rule: Rule) -> tuple[Any, ...] | None:
+    """Return the numbers of a list; None of what is none, as a text or a set, whose members have no order."""
+    others = is_array(value) or isinstance(value, str | bytes | bytearray | Set | Mapping)
+    if others or getattr(value, "ndim", 1) == 0 or not isinstance(value, Iterable):
+        return None
+    return tuple(to_float64(number, rule.kind) for number in value)
+
+
 def _plain_problems(path: str, number: Any, rule: Rule) -> list[str]:
-    array = [f"{path} has dims: must be a number"] if is_array(number) and number.dims else []
-    return array or number_problems(path, number, rule)
+    """Return the problems of a number that is the same for all designs."""
+    several = (is_array(number) and number.dims) or isinstance(number, np.ndarray | list | tuple)
+    if several or number is None:
+        return [f"{path} = {quote(number)}: must be {rule.number}, the same for all designs"]
+    return number_problems(path, number, rule)

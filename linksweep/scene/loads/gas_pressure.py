@@ -105,8 +105,11 @@ class GasPressure(ChangingLoad):
 
     def misfits(self, path: str, mechanism: Mechanism) -> list[str]:
         """Return why this mechanism cannot take the load, which is valid in itself."""
-        if not mechanism.sliders or (self.cycle and lack(mechanism, "engine_cylinder")):
+        if not mechanism.sliders:
             return [f"{path} is a GasPressure on {lack(mechanism, 'engine_cylinder')}, or a Load"]
+        if self.cycle and lack(mechanism, "engine_cylinder"):
+            wrong = f"{path}.pressure is a cycle, which takes a SliderCrank, not a {type(mechanism).__name__}"
+            return [f"{wrong}: give its pressure over theta2, as an xarray.DataArray or a function"]
         if problems := choice_problems(f"{path}.link", self.link, mechanism.sliders):
             return problems
         if "branch" in mechanism.both_branches:

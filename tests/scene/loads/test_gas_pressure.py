@@ -278,9 +278,10 @@ FOUR_BAR = ls.example("press").mechanism
 TWO = array(1.2, 1.4, design=[1, 2])
 SHORT = replace(ENGINE, rod=ls.Link(0.05, 0.0, 0.0), offset=0.02)
 REFUSED = [
+    ({"engine": FOUR_BAR}, "loads[1] is a GasPressure on a FourBar, which has no cylinder: give another"),
     (
-        {"engine": FOUR_BAR},
-        "loads[1] is a GasPressure on a FourBar, which has no cylinder: give another",
+        {"engine": ls.example("knuckle-press").mechanism},
+        "loads[1].pressure is a cycle, which takes a SliderCrank, not a Linkage: give its pressure over theta2",
     ),
     (
         {"engine": replace(ENGINE, branch="both")},
