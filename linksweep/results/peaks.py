@@ -66,9 +66,9 @@ def peaks(
     Dataset
         Over the design dims. A magnitude gives `F32_peak` [N] and `F32_peak_at` [degree]; a signed quantity `T12_max`,
         `T12_max_at`, `T12_min`, `T12_min_at` and `T12_peak` (largest magnitude). `status`: ok, partial_revolution
-        (peaks are those of the angles that are ok), cannot_assemble (NaN) or unbounded (some peak or mean is inf).
-        Between two angles it is that of these alone, and `F32_peak_at_end` says of each extreme whether it stands at an
-        end: inside (0), first (1), last (2) or no_peak (3).
+        (peaks are those of the angles that are ok; sums over several cylinders have none, NaN), cannot_assemble (NaN)
+        or unbounded (some peak or mean is inf). Between two angles it is that of these alone, and `F32_peak_at_end`
+        says of each extreme whether it stands at an end: inside (0), first (1), last (2) or no_peak (3).
 
     Raises
     ------

@@ -85,7 +85,9 @@ class MultiCylinder(ByContent):
 
     Notes
     -----
-    Loads turn with their cylinder; gravity does not. Equations and source: `linksweep.results.cylinders.cylinder_sums`.
+    Loads turn with their cylinder; gravity does not. An engine whose crank does not turn fully has sums at those angles
+    of a sweep where all cylinders are ok; their peaks and means are NaN, as no cycle is whole. Equations and source:
+    `linksweep.results.cylinders.cylinder_sums`.
 
     Examples
     --------
