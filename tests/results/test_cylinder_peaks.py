@@ -104,12 +104,31 @@ def test_the_flywheel_keeps_the_speed_by_the_equation_of_motion(machine):
     assert 0.5 * (speed.max() + speed.min()) == pytest.approx(ENGINE.omega2, rel=1e-4)
 
 
+JAMMING = replace(ENGINE, loads=(), mechanism=replace(ENGINE.mechanism, friction=4.0))
+
+
+def test_motion_counts_only_at_angles_where_friction_jams_no_cylinder():
+    """Against dense samples of two cylinders that are both ok, beyond which the kinetic energy is larger."""
+    names, machine, step = ["kinetic_energy", "Fs"], ls.MultiCylinder(JAMMING, [0, 100]), 0.01
+    result = ls.peaks(machine, of=[*names, "kinetic_energy_mean", "Fs_mean"])
+    theta2 = np.arange(0.0, 360.0, step) + 0.003
+    one, other = (
+        ls.sweep(JAMMING, (theta2 + ahead) % 360.0, of=["kinetic_energy", "Fsx", "Fsy"]) for ahead in (0, 100)
+    )
+    ok = (one.status.values == 0) & (other.status.values == 0)
+    x, y, energy = (one[name].values[ok] + other[name].values[ok] for name in ("Fsx", "Fsy", "kinetic_energy"))
+    for values, name, end in ((energy, "kinetic_energy", "max"), (np.hypot(x, y), "Fs", "peak")):
+        assert float(result[f"{name}_{end}"]) == pytest.approx(values.max(), rel=1e-5)
+        assert float(result[f"{name}_mean"]) == pytest.approx(values.mean(), rel=1e-4)
+        there = machine.sweep([float(result[f"{name}_{end}_at"])], of=[name])[name]
+        assert float(there[0]) == pytest.approx(float(result[f"{name}_{end}"]), rel=1e-10)
+
+
 def test_means_over_jamming_friction_have_no_bound():
     """Beside a jam T12 grows as 1/(θ − θ_jam), power likewise: neither they nor their squares have an integral there,
     as those of one scene have none; the shaking force has no pole."""
-    jamming = replace(ENGINE, loads=(), mechanism=replace(ENGINE.mechanism, friction=4.0))
     means = ["T12_mean", "T12_rms", "power_mean", "Fs_mean"]
-    for machine in (ls.MultiCylinder(jamming, [0]), ls.MultiCylinder(jamming, [0, 100])):
+    for machine in (ls.MultiCylinder(JAMMING, [0]), ls.MultiCylinder(JAMMING, [0, 100])):
         peaks = ls.peaks(machine, of=means)
         assert [float(abs(peaks[name])) for name in means[:3]] == [np.inf] * 3
         assert float(peaks.Fs_mean) < np.inf

@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from linksweep.engine.run import Field, Places
+from linksweep.results.compute import names_unless_jammed
 from linksweep.results.cylinders.cylinder_sums import combined, sources_of
 from linksweep.results.cylinders.multi_cylinder import MultiCylinder
 from linksweep.results.peak_search.along_paths import (
@@ -86,10 +87,12 @@ class Cylinders(NamedTuple):
         return lambda which, angles: self._sums((name,), rows[which], angles)[0]
 
     def _sums(self, names: tuple[str, ...], rows: Array, angles: Array) -> Array:
+        """Return values of sums, NaN where friction jams a cylinder: it has no motion to add either."""
         rules, throws, period = self.machine.rules, self.machine.throws, self.machine.period
         sources = sources_of(names, rules)
+        free = tuple(names_unless_jammed(self.machine.engine.at_one_angle, sources).values())
         own = [
-            group.values(sources, rows, in_period(angles + throw.ahead, period))
+            group.values(free, rows, in_period(angles + throw.ahead, period))
             for group, throw in zip(self.each, throws, strict=True)
         ]
         cylinders = [dict(zip(sources, values, strict=True)) for values in own]
