@@ -60,6 +60,7 @@ class Rule:
     above: float | None = None
     at_least: float | None = None
     at_most: float | None = None
+    below: float | None = None
     over_angle: bool = False
     polar: bool = False
 
@@ -87,6 +88,7 @@ class Rule:
         bound = f"greater than {self.above:g}" if self.above is not None else ""
         bound = f"at least {self.at_least:g}" if self.at_least is not None else bound
         bound += f" and at most {self.at_most:g}" if self.at_most is not None else ""
+        bound += f" and less than {self.below:g}" if self.below is not None else ""
         finite = "" if bound and np.isfinite(value) else "finite"
         negative = self.polar and np.isfinite(value)
         advice = "; for a point on the other side turn its angle by 180 degrees" if negative else ""
@@ -94,8 +96,9 @@ class Rule:
 
     def allows(self, value: float) -> bool:
         above = self.above is None or value > self.above
-        below = self.at_most is None or value <= self.at_most
-        return math.isfinite(value) and above and below and (self.at_least is None or value >= self.at_least)
+        at_least = self.at_least is None or value >= self.at_least
+        at_most = self.at_most is None or value <= self.at_most
+        return math.isfinite(value) and above and at_least and at_most and (self.below is None or value < self.below)
 
     def broken_by(self, values: np.ndarray) -> np.ndarray:
         broken = ~np.isfinite(values)
@@ -105,6 +108,8 @@ class Rule:
             broken |= ~(values >= self.at_least)
         if self.at_most is not None:
             broken |= ~(values <= self.at_most)
+        if self.below is not None:
+            broken |= ~(values < self.below)
         return broken
 
 

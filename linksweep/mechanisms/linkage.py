@@ -370,8 +370,6 @@ def gear_problems(joined: Topology, gears: Mapping[str, Any]) -> Iterator[str]:
         yield f"gears: all repeats only after {turns} turns of the crank: take ratios that repeat within {MOST_TURNS}"
     for name, ratio in joined.gears.items():
         angle = getattr(gears.get(name), "pressure_angle", None)
-        if isinstance(angle, float) and angle >= 90.0:
-            yield f"gears.{name}.pressure_angle = {angle:.15g} degree: must be less than 90"
         if angle is not None and ratio == 1:
             yield f"gears.{name}.pressure_angle: wheels of ratio 1 have no pitch point; leave it out"
 

@@ -317,7 +317,7 @@ class Gears(ByContent):
 
     ratio: Any = word('"-2"', "")
     phase: Number = parameter("angle", 0.0)
-    pressure_angle: Number = parameter("angle", None, at_least=0.0)
+    pressure_angle: Number = parameter("angle", None, at_least=0.0, below=90.0)
 
     def __post_init__(self) -> None:
         super().__post_init__()

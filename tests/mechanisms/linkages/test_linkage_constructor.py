@@ -167,9 +167,28 @@ def test_all_problems_are_reported_together():
         assert f"\n{start}" in f"\n{text}", text
 
 
-def test_pressure_angle_is_less_than_ninety():
-    with pytest.raises(ValueError, match=r"gears\.wheel\.pressure_angle = 90 degree: must be less than 90"):
-        geared(ls.Gears(pressure_angle=90.0))
+@pytest.mark.parametrize(
+    ("angle", "value"),
+    [
+        (90.0, "90 degree"),
+        ("95 deg", "95 degree"),
+        (xr.DataArray([20.0, 95.0, 160.0, 90.0], dims="p"), r"95 degree at p\[1\] \(and 2 more of 4\)"),
+        (xr.DataArray([20.0, 90.0], {"p": [1, 2]}, "p"), "90 degree at p = 2"),
+    ],
+)
+def test_pressure_angle_is_less_than_ninety(angle, value):
+    """The teeth would push along the line of pivots, or from behind it: tan 95° is negative."""
+    with pytest.raises(ValueError, match=rf"pressure_angle = {value}: must be at least 0 and less than 90$"):
+        geared(ls.Gears(pressure_angle=angle))
+
+
+def test_pressure_angles_of_a_study_are_less_than_ninety():
+    scene = ls.Scene(geared(ls.Gears(pressure_angle=20.0)), omega2=30.0)
+    path = "gears.wheel.pressure_angle"
+    for study in (lambda: ls.grid(scene, {path: [20.0, 95.0]}), lambda: ls.sample(scene, {path: (89.0, 100.0)}, n=9)):
+        with pytest.raises(ValueError, match=rf"{path} = .* degree.*: must be at least 0 and less than 90"):
+            study()
+    ls.grid(scene, {path: [0.0, 89.9]})
 
 
 def geared(gears):
