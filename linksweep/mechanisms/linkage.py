@@ -370,8 +370,10 @@ def gear_problems(joined: Topology, gears: Mapping[str, Any]) -> Iterator[str]:
         yield f"gears: all repeats only after {turns} turns of the crank: take ratios that repeat within {MOST_TURNS}"
     for name, ratio in joined.gears.items():
         angle = getattr(gears.get(name), "pressure_angle", None)
-        if angle is not None and ratio == 1:
-            yield f"gears.{name}.pressure_angle: wheels of ratio 1 have no pitch point; leave it out"
+        alike = "of ratio 1" if ratio == 1 else "on one shaft" * (joined.ground[0] in joined.links.get(name, ()))
+        if angle is not None and alike:
+            value = f" = {Rule('angle').measured(angle)}" if isinstance(angle, float) else ""
+            yield f"gears.{name}.pressure_angle{value}: wheels {alike} have no pitch point; leave it out"
 
 
 def branch_problems(joined: Topology, branch: Any) -> Iterator[str]:

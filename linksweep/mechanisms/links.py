@@ -306,7 +306,7 @@ class Gears(ByContent):
         Angle of the wheel where that of the crank is 0 [degree].
     pressure_angle : float or DataArray, default None
         Pressure angle of the teeth, 0 to below 90 [degree]: their force acts at the pitch point, for which the ratio
-        must not be 1. None for gears that pass on a torque alone.
+        must not be 1, nor the wheel stand on the crank's pivot. None for gears that pass on a torque alone.
 
     Examples
     --------

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import linksweep as ls
 from benchmarks.stress.linkages.__main__ import checked, missed
@@ -64,5 +65,31 @@ def test_dense_and_fast_agree(pressure_angle):
 
 
 def test_what_gears_cannot_be_is_refused():
-    with pytest.raises(ValueError, match=r"gears.wheel.pressure_angle: wheels of ratio 1 have no pitch point"):
+    angle = r"gears\.wheel\.pressure_angle = 20 degree"
+    with pytest.raises(ValueError, match=rf"{angle}: wheels of ratio 1 have no pitch point; leave it out"):
         geared(1, 20.0)
+
+
+def on_one_shaft(pressure_angle):
+    """Return a crank and a wheel on its pivot, braked."""
+    gears, bar = {"wheel": ls.Gears(pressure_angle=pressure_angle)}, ls.Link(0.05, 0.3, 4e-4)
+    return ls.Linkage(
+        "crank A-B, wheel A-E : -2 crank, left B-C, right E-C",
+        ground={"A": (0.1, 0.0)},
+        gears=gears,
+        crank=bar,
+        wheel=WHEEL,
+        left=ls.Link(0.18, 0.2, 1e-4),
+        right=ls.Link(0.17, 0.2, 1e-4),
+    )
+
+
+def test_wheels_on_one_shaft_have_no_pitch_point():
+    """A train that leads back to the crank's pivot passes on a torque; no single force at a distance has one."""
+    angle = r"gears\.wheel\.pressure_angle"
+    with pytest.raises(ValueError, match=rf"{angle} = 20 degree: wheels on one shaft have no pitch point; leave it"):
+        on_one_shaft(20.0)
+    with pytest.raises(ValueError, match=rf"{angle}: wheels on one shaft have no pitch point; leave it out"):
+        on_one_shaft(xr.DataArray([14.5, 20.0], dims="design"))
+    cycle = ls.sweep(ls.Scene(on_one_shaft(None), omega2=3.0, gravity=(0.0, -9.81)), 8, of=["T32", "power_residual"])
+    assert abs(cycle.T32).max() > 0.1 and abs(cycle.power_residual).max() < 1e-12
