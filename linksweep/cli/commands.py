@@ -90,17 +90,16 @@ def _add_pins_and_links(add: Callable[..., argparse.ArgumentParser]) -> None:
 
 
 def _bearings(options: argparse.Namespace) -> None:
-    import numpy as np
-
     scene = one_design(options.scene)
     sizes = {"--diameter": options.diameter, "--length": options.length}
     missing = [name for name, size in sizes.items() if size is None]
     if len(missing) == 1:
         raise ValueError(f"{missing[0]}: missing; a pressure needs --diameter and --length")
     bearing = ls.Bearing(options.diameter, options.length, capacity=options.capacity, kind=options.kind)
-    theta2 = np.linspace(options.theta2[0], options.theta2[1], SAMPLES) if options.theta2 else SAMPLES
-    print_answer(ls.bearings(scene, dict.fromkeys(scene.mechanism.pins, bearing), theta2=theta2))
-    show(options, lambda: ls.plot.bearings(ls.sweep(scene, theta2), frame=options.frame))
+    ds = ls.bearings(scene, dict.fromkeys(scene.mechanism.pins, bearing), theta2=options.theta2 or SAMPLES)
+    print_answer(ds)
+    angles = ds["theta2"].values if options.theta2 else SAMPLES
+    show(options, lambda: ls.plot.bearings(ls.sweep(scene, angles), frame=options.frame))
 
 
 def _choose_bearings(options: argparse.Namespace) -> None:

@@ -99,6 +99,22 @@ def test_bearings_over_part_of_a_turn_and_of_a_machine_with_toggles(table):
         assert rows[pin][-2:] == ["0", "unbounded load"]
 
 
+def test_a_part_of_a_turn_is_stated_alike_for_every_command(capsys):
+    page, life = ["-o", "page.html"], ["--life", "9000 h"]
+    for word, option, *more in (
+        ["bearings", "--theta2"],
+        ["choose-bearings", "--theta2", *life],
+        ["report", "--theta2", *page],
+        ["peaks", "--between"],
+    ):
+        assert main([word, "press.toml", option, "60", "10", *more]) == 2
+        out, err = capsys.readouterr()
+        assert out == "" and err == (
+            f"linksweep: {option} (60, 10): must be a pair (first, last), first less than last by at most 360 degrees; "
+            "from 60 on to 10 is (60, 370)\n"
+        )
+
+
 def test_breakdown_adds_up_at_the_worst_angle(table):
     rows = table("breakdown", "press.toml", "F32")
     peak = ls.peaks(PRESS, of=["F32"])
