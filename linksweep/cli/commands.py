@@ -159,8 +159,12 @@ def _require_whole(path: Path, values: xr.DataArray) -> None:
 
 
 def _orders(options: argparse.Namespace) -> None:
-    ds = ls.orders(ls.sweep(one_design(options.scene), of=options.of), options.of, n=options.n)
-    _require_whole(options.scene, ds[f"{options.of[0]}_amplitude"])
+    scene = one_design(options.scene)
+    if options.of is SHAKING and not scene.table.quantity.keys() >= {*SHAKING}:
+        machine, name = type(scene.mechanism).__name__, next(iter(scene.table.quantity))
+        raise ValueError(f"NAME: missing; a {machine} has no shaking force; name quantities, such as {name}")
+    ds = ls.orders(ls.sweep(scene, of=options.of), options.of, n=options.n)
+    _require_whole(options.scene, ds.to_array())
     print_answer(ds)
     show(options, lambda: ls.plot.orders(ds))
 

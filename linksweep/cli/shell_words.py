@@ -17,6 +17,7 @@ PHRASES = {
     ),
     "; of the example write ls.example(": "; there is an example (",
     "; take ls.peaks of its position, or": ";",
+    "; or sweep at more angles": "",
     "; take ls.best_counterweights, or": ";",
     " (plot.loop draws a track)": "",
     'ls.Tolerance(lower, upper), ls.Normal(deviation=...) or a class of ISO 286, as "h9"': (

@@ -102,7 +102,8 @@ def test_designs_keep_their_dims_and_a_broken_one_changes_no_other():
 @pytest.mark.parametrize(
     ("angles", "of", "n", "message"),
     [
-        (np.arange(8) * 45.0, "T12", 4, "8 samples resolve orders below 4"),
+        (np.arange(8) * 45.0, "T12", 4, "n = 4: must be less than 4, half the samples of a turn; or sweep"),
+        (np.arange(8) * 45.0, "status", 2, "of = 'status': is a code without orders; name quantities"),
         (np.arange(8) * 45.0, "T12", 0, "n = 0: must be a whole number"),
         (np.arange(8) * 45.0, "F32", 2, "of: nothing is named 'F32'"),
         (np.linspace(0.0, 360.0, 9), "T12", 2, "orders take a whole cycle in equal steps; sweep with a count"),

@@ -159,6 +159,12 @@ def test_orders(table):
     assert table("orders", "press.toml", "T12", "-n", "1")["order"] == ["T12 [N m]"]
 
 
+def test_orders_of_the_force_in_a_pin(table):
+    """B stands for F32, in a cycle that is whole and in the check that it is."""
+    assert table("orders", "press.toml", "B", "T12") == table("orders", "press.toml", "F32,T12")
+    assert table("orders", "press.toml", "B")["order"] == ["F32 [N]"]
+
+
 @pytest.mark.parametrize("fluctuation", ["0.05", "5 %"])
 def test_flywheel(table, fluctuation):
     rows = table("flywheel", "press.toml", "--fluctuation", fluctuation)
@@ -199,6 +205,9 @@ def test_each_draws_its_figure(arguments, capsys):
         (["balance", "press.toml", "--radius", "-6 cm"], "--radius -0.06 m: must be greater than 0"),
         (["balance", "press.toml", *RADIUS, "--fraction", "1"], "--fraction 1.0: must be left out"),
         (["orders", "press.toml", "T99"], "nothing is named 'T99'"),
+        (["orders", "press.toml", "status"], "NAME 'status': is a code without orders; name quantities, such as F32"),
+        (["orders", "loop.toml"], "NAME: missing; a LoopTrack has no shaking force; name quantities, such as speed"),
+        (["orders", "press.toml", "-n", "1000"], "-n 1000: must be less than 360, half the samples of a turn\n"),
         (["flywheel", "press.toml", "--fluctuation", "3"], "--fluctuation 3.0: must be less than 2"),
         (["flywheel", "pres"], 'pres: there is no such file; did you mean "press'),
         (["flywheel", "pres.toml"], "pres.toml: there is no such file"),

@@ -66,6 +66,7 @@ def orders(ds: xr.Dataset, of: str | Iterable[str], *, n: int = 12) -> xr.Datase
     names = [name_in_results(ds, name) for name in requested("of", of)]
     index = next((dim for dim in indices() if dim in ds.dims), "theta2")
     refuse([] if index in ds.dims else [f"ds has no dimension {index}: take what ls.sweep returns"])
+    refuse(["of = 'status': is a code without orders; name quantities, such as F32"] if "status" in names else [])
     known = [str(name) for name in ds.data_vars if name != "status"]
     refuse([problem for name in names for problem in name_problems("of", name, known)] + count_problems("n", n))
     angles = ds[index].values.astype(float)
@@ -74,7 +75,7 @@ def orders(ds: xr.Dataset, of: str | Iterable[str], *, n: int = 12) -> xr.Datase
     part = f"{index} covers {period:g} degrees, but motion and loads repeat after {whole:g}: sweep with a count, "
     refuse([f"{part}such as {index}={2.0 * whole:g}"] if period % whole else [])
     most = len(angles) * TURN / period / 2.0
-    few = f"n = {quote(n)}: {len(angles)} samples resolve orders below {most:g}; sweep at more angles"
+    few = f"n = {quote(n)}: must be less than {most:g}, half the samples of a turn; or sweep at more angles"
     refuse([] if n < most else [few])
     order = np.arange(int(n * period / TURN) + 1) * (TURN / period)
     waves = [xr.DataArray(wave, dims=("order", index)) for wave in cos_sin(np.multiply.outer(order, angles))]

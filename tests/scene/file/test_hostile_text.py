@@ -243,7 +243,7 @@ def test_a_file_name_with_an_invalid_byte(here, capsys):
     [
         ("sweep press.toml -o a.nc --theta2 1000000000000", "--theta2 1000000000000: needs 4.8e+04 GB of memory"),
         ("peaks press.toml --theta2 1000000000000", "--theta2 1000000000000: needs 4.8e+04 GB of memory"),
-        ("orders press.toml -n 1000000000", "-n 1000000000: 720 samples resolve orders below 360"),
+        ("orders press.toml -n 1000000000", "-n 1000000000: must be less than 360, half the samples of a turn"),
         ("animate press.toml -o a.gif --frames 1000000000", "--frames 1000000000: needs 3.11e+05 GB of memory"),
     ],
 )
