@@ -88,9 +88,20 @@ def test_a_ground_pin_takes_length_and_angle_of_the_frame():
     assert move.numbers == pytest.approx({"ground": 0.18 * math.sqrt(2.0), "ground_angle": -45.0})
 
 
-@pytest.mark.parametrize(("name", "angle"), [("watt-2", 70.0), ("knuckle-press", 200.0), ("jansen-leg", 130.0)])
-def test_each_pin_of_a_linkage_goes_where_it_is_dragged_and_its_neighbours_stay(name, angle):
-    scene = ls.example(name)
+FIVE_BAR = ls.example("geared-five-bar")
+THREE_TO_TWO = replace(
+    FIVE_BAR, mechanism=replace(FIVE_BAR.mechanism, links="crank A-B, wheel D-E : -3/2 crank, left B-C, right E-C")
+)
+
+
+@pytest.mark.parametrize(
+    ("scene", "angle"),
+    [
+        *((ls.example("watt-2"), 70.0), (ls.example("knuckle-press"), 200.0), (ls.example("jansen-leg"), 130.0)),
+        *((FIVE_BAR, 40.0), (FIVE_BAR, 300.0), (THREE_TO_TWO, 500.0)),
+    ],
+)
+def test_each_pin_of_a_linkage_goes_where_it_is_dragged_and_its_neighbours_stay(scene, angle):
     joined = scene.mechanism.topology
     moving = [pin for pin in joined.members if pin not in joined.ground]
     of = [f"{pin}{axis}" for pin in moving for axis in "xy"]
@@ -107,6 +118,15 @@ def test_each_pin_of_a_linkage_goes_where_it_is_dragged_and_its_neighbours_stay(
             third = other in joined.points and joined.points[other] in joined.members[pin] and other != pin
             if not third:  # a third pin turns with its link
                 assert [float(after[f"{other}{axis}"][0]) for axis in "xy"] == pytest.approx(expected, abs=1e-9), other
+
+
+def test_the_pin_of_a_wheel_without_a_phase_stays_on_its_line():
+    machine = replace(FIVE_BAR.mechanism, gears={})
+    scene, angle = replace(FIVE_BAR, mechanism=machine), 40.0
+    along = np.array([math.cos(math.radians(-angle)), math.sin(math.radians(-angle))])
+    move = dragged(scene, "E", tuple([0.24, 0.0] + 0.06 * along + 0.01 * along[::-1] * [-1.0, 1.0]), angle)
+    there = ls.sweep(replaced(scene, move.numbers), [angle], of=["Ex", "Ey"])
+    assert [float(there.Ex[0]), float(there.Ey[0])] == pytest.approx([0.24, 0.0] + 0.06 * along, abs=1e-12)
 
 
 def test_a_slider_is_dragged_along_its_guide():

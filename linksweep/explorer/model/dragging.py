@@ -1,8 +1,9 @@
 """Dragging a pin: the lengths, and the place on the ground, that put it under the mouse.
 
 The other pins stay where they are, but for those that a slide or a cylinder places. A link between two pins gets the
-distance between them; its third pins get new polar coordinates in its axes. A ground pin gets a new place, and its
-links, which keep their lengths, follow it. The crank turns with its pin, and all that hangs on it moves.
+distance between them, and a wheel the phase of its direction; third pins get new polar coordinates in the axes of their
+link. A ground pin gets a new place, and its links, which keep their lengths, follow it. The crank turns with its pin,
+and all that hangs on it moves.
 """
 
 from __future__ import annotations
@@ -35,11 +36,14 @@ def handles(scene: Scene) -> list[str]:
     here, drawing = dict.fromkeys(joined.members, np.zeros(2)), drawing_of(scene.mechanism)
     plain, pins = values(scene), {*drawing.fixed(scene.mechanism), *drawing.moving}
     in_place = [pin for pin in joined.members if pin in pins]
-    return [pin for pin in in_place if {*_numbers(scene, joined, here, pin, np.ones(2))} & {*plain}]
+    return [pin for pin in in_place if {*_numbers(scene, joined, here, pin, np.ones(2), 0.0)} & {*plain}]
 
 
 def dragged(scene: Scene, pin: str, place: tuple[float, float], angle: float) -> Move:
-    """Return the numbers with which a pin lies at a place [m] at a crank angle [degree]; the nearest on its guide."""
+    """Return the numbers with which a pin lies at a place [m] at a crank angle [degree].
+
+    A pin on a guide goes to the nearest place on it, and that of a wheel without a phase to the nearest on its line.
+    """
     joined: Topology = scene.mechanism.topology  # type: ignore[attr-defined]
     drawing = drawing_of(scene.mechanism)
     motion = positions(scene, drawing, [angle])
@@ -51,9 +55,16 @@ def dragged(scene: Scene, pin: str, place: tuple[float, float], angle: float) ->
     for block in drawing.blocks:
         if block.pin == pin and block.guide is not None:
             rail = block.guide(scene.mechanism)
-            there = rail.point + rail.along * (rail.along @ (there - rail.point))
+            there = _nearest(there, rail.point, rail.along)
     plain = values(scene)
-    numbers = {path: value for path, value in _numbers(scene, joined, here, pin, there).items() if path in plain}
+    for role in joined.gears:
+        ends = joined.links[role][:2]
+        if pin in {*ends} - {*joined.ground} and f"gears.{role}.phase" not in plain:
+            hub = here[ends[1] if pin == ends[0] else ends[0]]
+            arm = here[pin] - hub
+            there = _nearest(there, hub, arm / np.hypot(*arm))
+    new = _numbers(scene, joined, here, pin, there, angle)
+    numbers = {path: value for path, value in new.items() if path in plain}
     refuse([] if numbers else [f"pin {pin}: no plain number of the scene moves it"])
     pivot, end = joined.pins_of(joined.crank)[:2]
     turned = _within_half_turn(_direction(there - here[pivot]) - angle) if pin == end else 0.0
@@ -61,9 +72,9 @@ def dragged(scene: Scene, pin: str, place: tuple[float, float], angle: float) ->
 
 
 def _numbers(
-    scene: Scene, joined: Topology, here: dict[str, np.ndarray], pin: str, there: np.ndarray
+    scene: Scene, joined: Topology, here: dict[str, np.ndarray], pin: str, there: np.ndarray, angle: float
 ) -> dict[str, float]:
-    """Return the numbers that put a pin there while the others stay."""
+    """Return the numbers that put a pin there, at this crank angle, while the others stay."""
     if pin in joined.ground:
         return {} if pin == joined.ground[0] else _on_ground(scene, joined, pin, there)
     numbers: dict[str, float] = {}
@@ -76,6 +87,9 @@ def _numbers(
         elif pin in (first, second) and not crank_pin:
             numbers[f"{role}.length"] = float(np.hypot(*(now[second] - now[first])))
             numbers |= _third_pins(joined, now, role, others)
+            if role in joined.gears:
+                turned = float(joined.gears[role]) * angle
+                numbers[f"gears.{role}.phase"] = _within_half_turn(_direction(now[second] - now[first]) - turned)
         elif joined.points.get(pin) == role:
             numbers |= _third_pins(joined, now, role, [pin])
     return numbers
@@ -98,6 +112,12 @@ def _on_ground(scene: Scene, joined: Topology, pin: str, there: np.ndarray) -> d
         x, y = there + np.array([float(part) for part in machine.ground[joined.ground[0]]])
         return {f"{GROUND}.{pin}[1]": float(x), f"{GROUND}.{pin}[2]": float(y)}
     return {"ground": float(np.hypot(*there)), "ground_angle": _within_half_turn(_direction(there))}
+
+
+def _nearest(place: np.ndarray, point: np.ndarray, along: np.ndarray) -> np.ndarray:
+    """Return the place on a line, of a point and a unit vector, that is nearest to another."""
+    nearest: np.ndarray = point + along * (along @ (place - point))
+    return nearest
 
 
 def _direction(vector: np.ndarray) -> float:
