@@ -14,6 +14,7 @@ from drawn import closed_figures  # noqa: F401
 
 import linksweep as ls
 from linksweep.cli.main import main
+from linksweep.plot.sheets.save_drawing import scale_of
 
 INCH, MM, POINT = 0.0254, 1e-3, 0.0254 / 72.0  # m
 GROUND = 0.20
@@ -87,6 +88,11 @@ def test_a_curve_with_gaps_is_drawn_in_pieces(tmp_path):
     assert {part.dxf.layer for part in document.modelspace()} == {"curve 1 of coupler"}
 
 
+@pytest.mark.parametrize("scale", ["1:2", "0.5", 0.5, " 1 : 2 "])
+def test_a_scale_is_a_ratio_or_a_number(scale):
+    assert scale_of(scale) == 0.5
+
+
 def test_svg_and_pdf_are_to_scale(tmp_path):
     for ending in ("svg", "pdf"):
         ls.save_drawing(ls.example("press"), tmp_path / f"press.{ending}", theta2=30.0, scale="1:2")
@@ -113,7 +119,9 @@ def test_drawings_of_equal_scenes_are_equal(tmp_path):
     [
         ("press.dwg", {}, r"press\.dwg: its ending must be \.dxf or \.pdf or \.svg"),
         ("press.dxf", {"scale": 0.5}, r"scale = 0\.5: a DXF file is in full size"),
-        ("press.svg", {"scale": "1:zero"}, r'scale = "1:zero"'),
+        ("press.svg", {"scale": "1:zero"}, r'scale = "1:zero": must be a scale such as 1:2, or a number such as 0\.5'),
+        ("press.svg", {"scale": "1/2"}, r'scale = "1/2": must be a scale such as 1:2, or a number such as 0\.5'),
+        ("press.svg", {"scale": "-0.5"}, r"scale = -0\.5: must be greater than 0"),
         ("press.svg", {"scale": "200:1"}, r"scale = 200: makes a page of .* m; must be small enough"),
         ("press.svg", {"machine": False}, r"machine = False: curves must name at least one point"),
         ("press.svg", {"curves": [("rod", 0.1, 0.0)]}, r"curves\[1\]\[1\] = 'rod': must be one of"),

@@ -116,9 +116,11 @@ def _points(scene: Scene, curves: Any) -> list[Curve]:
 
 def scale_of(scale: Any) -> float:
     """Return the length on paper per length of a machine, of a number or a text such as "1:2"."""
-    paper, colon, of_machine = scale.partition(":") if isinstance(scale, str) else (scale, "", "")
-    try:
-        size = float(paper) / float(of_machine) if colon else scale
-    except (ValueError, ZeroDivisionError):
-        size = scale
+    size = scale
+    if isinstance(scale, str):
+        paper, colon, of_machine = scale.partition(":")
+        try:
+            size = float(paper) / (float(of_machine) if colon else 1.0)
+        except (ValueError, ZeroDivisionError):
+            raise ValueError(f'scale = "{scale}": must be a scale such as 1:2, or a number such as 0.5') from None
     return one_number("scale", size, Rule("dimensionless", above=0.0))
