@@ -56,6 +56,8 @@ def _sensitivities(options: argparse.Namespace) -> None:
 
 
 def _tolerance(options: argparse.Namespace) -> None:
+    from linksweep.plot.tolerances import tornados
+
     for words in options.tolerances:
         if len(words) not in (2, 3):
             form = "must be a parameter with two limits, or with one class, as ground js9"
@@ -64,7 +66,7 @@ def _tolerance(options: argparse.Namespace) -> None:
     scene = one_design(options.scene)
     ds = ls.tolerance(scene, tolerances, of=options.of, n=options.n, pins=_rolling_bearings(scene, options))
     print_answer(ds)
-    show(options, lambda: ls.plot.tornado(ds))
+    show(options, lambda: tornados(ds))
 
 
 def _rolling_bearings(scene: ls.Scene, options: argparse.Namespace) -> dict[str, ls.Bearing]:

@@ -269,6 +269,13 @@ def test_tolerances_of_results_that_are_not_finite_have_no_numbers(tmp_path, mon
     assert " to inf N, not finite in all of them" in out and "nan" not in out
 
 
+def test_each_result_of_a_tolerance_has_a_panel(capsys):
+    names = ["--of", "F32_peak", "T12_peak", "--tol", "ground", "js9", "-n", "0"]
+    assert main(["tolerance", "press.toml", *names, "--plot", "figure.svg"]) == 0
+    titles = re.findall(r"<!-- (\w+) \[.*\] -->", Path("figure.svg").read_text("utf-8"))
+    assert titles == ["F32_peak", "T12_peak"]
+
+
 def test_the_guide_lists_the_commands_that_draw_figures():
     guide = Path(__file__).parents[2] / ".docs" / "guide" / "command_line.md"
     listed = guide.read_text("utf-8").split("draws those of ")[1].split(". ")[0]

@@ -1,6 +1,7 @@
 """Plots of analyses in awkward cases: unbounded peaks, limits off the axis, zero forces."""
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -276,3 +277,21 @@ def test_a_motor_is_plotted_beside_its_load_and_nothing_else(other):
     load = ls.motor_load(ls.example("press"), ls.Motor([0.0, 600.0], [4.0, 1.0]), ratio=10.0, theta2=24)
     with pytest.raises(ValueError, match=r"^motor = .*: must be a Motor, InductionMotor, DCMotor or GovernedMotor$"):
         ls.plot.motor_load(load, other)
+
+
+def test_the_band_of_tolerances_is_about_the_mean_of_all():
+    """With limits on one side it is the peak of a crank midway between them; 3 sigma are those of an even spread.
+
+    Ticks of a range of a few ten millinewton, at 354 N, have room beside each other.
+    """
+    crank, span = PRESS.mechanism.crank.length, 21e-6
+    ax = ls.plot.tornado(ls.tolerance(PRESS, {"crank.length": ls.Tolerance(0.0, span)}, of="F32_peak", n=0))
+    band = ax.patches[0].get_x() + np.array([0.0, ax.patches[0].get_width()])
+    designs = ls.grid(PRESS, {"crank.length": [crank, crank + span / 2.0, crank + span]})
+    first, middle, last = ls.peaks(designs, of=["F32"]).F32_peak.values
+    assert band.mean() == pytest.approx(middle, abs=1e-3 * (last - first))
+    assert band[1] - band[0] == pytest.approx(6.0 * (last - first) / np.sqrt(12.0), rel=1e-3)
+    ax.figure.canvas.draw()
+    labels = [label.get_window_extent() for label in ax.get_xticklabels() if label.get_text()]
+    assert len(labels) > 2 and all(one.x1 < other.x0 for one, other in pairwise(labels))
+    assert ax.xaxis.get_offset_text().get_text() == ""
