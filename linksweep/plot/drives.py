@@ -29,7 +29,6 @@ if TYPE_CHECKING:
 ROUNDING = 1e-9  # of the largest torque: the mean of one that does no work
 BETWEEN = 20
 """Points drawn from the end of a step of a run to that of the next."""
-TICK = 90.0  # degrees of the crank between named points
 ON_MOTOR = {
     "speed": "crank speed $|\\omega_2|$",
     "motor_torque": "motor torque",

@@ -44,7 +44,8 @@ def bearing(ds: xr.Dataset, of: str = "F32", *, frame: str = "ground", ax: Axes 
     Returns
     -------
     matplotlib Axes
-        Axes with equal scales; dots on the locus every 30 degrees of the crank, an arrow from the origin to the peak.
+        Axes with equal scales; dots on the locus every 30 degrees of the crank, of many turns fewer, an arrow from
+        the origin to the peak.
 
     Raises
     ------

@@ -40,7 +40,8 @@ def hodograph(ds: xr.Dataset, of: str = "Fs", *, ax: Axes | None = None) -> Axes
     Returns
     -------
     matplotlib Axes
-        Axes with equal scales, a dot every 30 degrees of the crank, and an arrow to the largest.
+        Axes with equal scales, a dot every 30 degrees of the crank, of many turns fewer, and an arrow to the
+        largest.
 
     Raises
     ------

@@ -1,6 +1,7 @@
 """Drawings of linkages: pins at the links' lengths, plates, blocks on their guides, the curve of a free pin."""
 
-from itertools import combinations
+from dataclasses import replace
+from itertools import combinations, pairwise
 
 import numpy as np
 import pytest
@@ -112,3 +113,30 @@ def test_a_report_lists_ground_pins_guides_and_branches():
     page = str(settings(ls.example("knuckle-press")))
     for row in ("ground pin D", "guide slide", "branch of C"):
         assert row in page
+
+
+@pytest.mark.parametrize(("ratio", "turns", "step"), [("-3/2", 2, 90.0), ("-3/7", 7, 360.0), ("40/99", 99, 7200.0)])
+def test_angles_of_many_turns_are_round_and_have_room(ratio, turns, step):
+    """On the axis, where no two overlap, and along a locus, with the dots between them."""
+    link = ls.Link(0.05, 0.5, 1e-3, 0.02, 30.0)
+    machine = ls.Linkage(
+        f"crank A-B, wheel D-E : {ratio} crank, left B-C, right E-C",
+        ground={"A": (0.0, 0.0), "D": (0.2, 0.05)},
+        crank=link,
+        wheel=link,
+        left=replace(link, length=0.22),
+        right=replace(link, length=0.25),
+    )
+    cycle = ls.sweep(ls.Scene(machine, omega2=20.0), theta2=turns * 36)
+    ax = cycle.linksweep.torque()
+    ax.figure.canvas.draw()
+    labels = [label.get_window_extent() for label in ax.get_xticklabels()]
+    assert set(np.diff(ax.get_xticks())) == {step} and all(one.x1 < other.x0 for one, other in pairwise(labels))
+    figure = cycle.linksweep.cycle()
+    figure.canvas.draw()
+    for ax in (ax for ax in figure.axes if "crank angle" in ax.get_xlabel()):
+        labels = [label.get_window_extent() for label in ax.get_xticklabels()]
+        assert len(labels) > 2 and all(one.x1 < other.x0 for one, other in pairwise(labels))
+    ax = cycle.linksweep.bearing("F42")
+    named = [text for text in texts(ax) if text.endswith("°") and "F_" not in text]
+    assert len(named) <= 8 and len(line(ax, "_ticks").get_xdata()) <= 24

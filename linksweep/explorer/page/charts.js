@@ -63,7 +63,7 @@ class Curves {
   }
 
   gridLines() {
-    const made = [], step = this.turn > 360 ? 180 : 90;
+    const made = [], step = angleStep(this.turn);
     for (let angle = 0; angle <= this.turn; angle += step) {
       const x = this.x(angle);
       made.push(svg("line", {x1: x, x2: x, y1: MARGIN.top, y2: this.height - MARGIN.bottom}));

@@ -54,6 +54,12 @@ function ticks(low, high, count) {
   return Array.from({length: last - first + 1}, (_, k) => Number(((first + k) * step).toPrecision(12)));
 }
 
+// The step of an axis of crank angles: a part of a turn, or whole turns, so that it has eight numbers at most.
+function angleStep(turn) {
+  if (turn <= 360) return 90;
+  return [180, 360, 720, 1800, 3600, 7200].find(step => turn <= 8 * step) ?? turn;
+}
+
 // Places over a cycle: x of all angles, then y. What stands still has one.
 const count = pair => pair.length / 2;
 const at = (pair, k) => { const n = count(pair); return [pair[k % n], pair[n + k % n]]; };

@@ -8,15 +8,15 @@ import numpy as np
 
 from linksweep.plot.kit import signals
 from linksweep.plot.kit.colors import BLUE, GREY, VERMILION
-from linksweep.plot.kit.style import grid
+from linksweep.plot.kit.style import grid, round_step
 from linksweep.tables.cells import fixed
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 SIZE = (5.6, 5.2)  # inches
-TICK = 30.0  # degrees of the crank between dots on the locus
-LABELLED = 90.0  # degrees between dots with a number
+LABELS, LABELLED = 8, 90.0  # dots with an angle, at most, and degrees between them, at least
+DOTS = 3  # from one angle to the next
 BEYOND = 1.1  # of the largest force on the scale: larger forces are off it
 
 
@@ -79,14 +79,16 @@ def _ticks(ax: Axes, angles: np.ndarray, x: np.ndarray, y: np.ndarray, usual: fl
     """Draw dots on the locus at round crank angles up to the last, some with the angle beside them."""
     from linksweep.plot.kit.labels import label
 
-    at = np.arange(np.ceil(angles[0] / TICK) * TICK, last + 1e-9, TICK)
+    labelled = round_step(last - angles[0], LABELS, LABELLED)
+    tick = labelled / DOTS
+    at = np.arange(np.ceil(angles[0] / tick) * tick, last + 1e-9, tick)
     closed = (x[0], y[0]) == (x[-1], y[-1])
     at = at[:-1] if len(at) > 1 and closed and (at[0], at[-1]) == (angles[0], angles[-1]) else at
     points = np.array([np.interp(at, angles, x), np.interp(at, angles, y)])
     there = np.isfinite(points).all(axis=0) & (np.hypot(*points) <= BEYOND * usual)
     at, points = at[there], points[:, there]
     ax.plot(*points, "o", color=BLUE, markersize=3.6, label="_ticks")
-    named = at % LABELLED == 0.0
+    named = at % labelled == 0.0
     if named.sum() < 3:
         named[:] = True
     for k, (angle, point) in enumerate(zip(at[named], points.T[named], strict=True)):

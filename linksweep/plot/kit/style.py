@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 SMALL: dict[Any, Any] = {"font.size": 8.0, "axes.titlesize": 9.0, "lines.linewidth": 1.3}
 """Settings of figures of several panels."""
+ROUND = (45.0, 90.0, 180.0, 360.0, 720.0, 1800.0, 3600.0, 7200.0, 18000.0)
+"""Steps of crank angles [degree] that are easy to read off: parts of a turn, then turns."""
 
 
 def axes_or_new(ax: Axes | None, **figure: Any) -> Axes:
@@ -61,12 +63,17 @@ def crank_angles(ax: Axes, angles: np.ndarray) -> None:
     span = float(angles[-1] - angles[0])
     if span >= 180.0:
         wide = ax.get_window_extent().width / ax.figure.dpi > 4.0
-        step = (45.0 if wide else 90.0) * (2.0 if span > 400.0 else 1.0)
+        step = round_step(span, 9.0) if wide else round_step(span, 5.0, 90.0)
         ax.xaxis.set_major_locator(MultipleLocator(step))
         ax.xaxis.set_minor_locator(MultipleLocator(step / 3.0))
     if span > 0.0:
         ax.set_xlim(angles[0], angles[-1])
     ax.set_xlabel("crank angle $\\theta_2$ [°]")
+
+
+def round_step(span: float, most: float, least: float = ROUND[0]) -> float:
+    """Return the least round step [degree] of which so many, at most, cover a span of crank angles."""
+    return next((step for step in ROUND if step >= least and span <= most * step), span / most)
 
 
 def grid(ax: Axes) -> Axes:
