@@ -37,8 +37,13 @@ class Side(NamedTuple):
     edges: np.ndarray
     words: tuple[str, ...]
 
+    @property
+    def digits(self) -> int:
+        """Significant digits that tell neighbours apart."""
+        return scales.digits(self.edges)
+
     def text_at(self, place: float) -> str:
-        value = self.words[round(place)] if self.words else f"{place:.4g}"
+        value = self.words[round(place)] if self.words else f"{place:.{self.digits}g}"
         unit = self.text.rpartition(" [")[2].rstrip("]") if self.text.endswith("]") else ""
         return f"{in_words(self.name)} {value} {unit}".strip()
 
@@ -132,7 +137,8 @@ def heat_map(
     if sample is not None and statistic == "best":
         star = _best_design(sample, of, across, up, maximize)
     kind = ("largest" if maximize else "least") + ("" if statistic == "best" else f" {statistic}")
-    handles = [_star(ax, star, kind, ds[of], across, up)]
+    worth = f"{kind}: {signals.number(star[2], scales.digits(values[ok]))} {ds[of].attrs.get('units', '')}".strip()
+    handles = [_star(ax, star, worth, across, up)]
     if contours is True:  # the colour bar has their unit
         _contours(ax, ds[of], across, up, ok)
     elif contours:
@@ -269,11 +275,10 @@ def _best_design(ds: xr.Dataset, of: str, across: Side, up: Side, maximize: bool
     return float(ds[across.name][k]), float(ds[up.name][k]), float(values[k])
 
 
-def _star(ax: Axes, star: tuple[float, float, float], kind: str, item: xr.DataArray, across: Side, up: Side) -> Any:
-    """Draw a star on the best design, or bin; return its handle, with value and place."""
-    x, y, value = star
-    text = f"{kind}: {signals.number(value)} {item.attrs.get('units', '')}"
-    where = f"{text.strip()} at {across.text_at(x)}, {up.text_at(y)}"
+def _star(ax: Axes, star: tuple[float, float, float], worth: str, across: Side, up: Side) -> Any:
+    """Draw a star on the best design, or bin; return its handle, with what it is worth and its place."""
+    x, y, _ = star
+    where = f"{worth} at {across.text_at(x)}, {up.text_at(y)}"
     style: dict[str, Any] = {"markersize": 13.0, "color": "white", "markeredgecolor": BLACK, "zorder": 3.0}
     (drawn,) = ax.plot([x], [y], "*", label=where, clip_on=False, **style)
     return drawn
@@ -304,8 +309,14 @@ def _contours(ax: Axes, item: xr.DataArray, across: Side, up: Side, ok: np.ndarr
 
 
 def _axes(ax: Axes, across: Side, up: Side) -> None:
+    """Label both axes; a power of ten or an offset above them would lie on the legend."""
+    from matplotlib.ticker import MaxNLocator
+
     ax.set(xlabel=across.text, ylabel=up.text)
-    if across.words:
-        ax.set_xticks(across.places, across.words)
-    if up.words:
-        ax.set_yticks(up.places, up.words)
+    for axis, side in ((ax.xaxis, across), (ax.yaxis, up)):
+        if side.words:
+            axis.set_ticks(side.places, side.words)
+        else:
+            axis.set_major_formatter(scales.plain(side.edges))
+    if across.digits > 5 and not across.words:
+        ax.xaxis.set_major_locator(MaxNLocator(4, steps=[1, 2, 5, 10]))

@@ -24,16 +24,16 @@ def fixed(value: float, decimals: int, sign: str = "") -> str:
     return f"{round(value, decimals) + 0.0:{sign}.{decimals}f}"
 
 
-def number(value: float) -> str:
-    """Format a number with four significant digits."""
+def number(value: float, significant: int = 4) -> str:
+    """Format a number with so many significant digits."""
     if value == 0.0:
         return "0"
     if np.isinf(value):
         return "∞" if value > 0.0 else "−∞"
     if not 1e-3 <= abs(value) < 1e7:
-        return f"{value:.3e}".replace("-", "−")
-    digits = np.format_float_positional(value, precision=4, unique=False, fractional=False, trim="k")
-    return digits.rstrip(".").replace("-", "−")
+        return f"{value:.{significant - 1}e}".replace("-", "−")
+    text = np.format_float_positional(value, precision=significant, unique=False, fractional=False, trim="k")
+    return text.rstrip(".").replace("-", "−")
 
 
 def finite_or_inf(value: float) -> str:

@@ -1,5 +1,8 @@
 """Heat maps of samples, in bins, and the best of parallel coordinates: by what was asked for."""
 
+import re
+from itertools import pairwise
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -155,3 +158,26 @@ def test_a_front_and_a_screening_know_what_was_asked_for():
         SAMPLE.linksweep.parallel_coordinates(minimize="F32_peak", maximize="F32_peak")
     with pytest.raises(ValueError, match=r"^minimize: nothing is named 'F33_peak'"):
         SAMPLE.linksweep.parallel_coordinates(minimize="F33_peak")
+
+
+def test_a_map_over_narrow_ranges_tells_its_designs_apart():
+    """The best design's numbers lead back to it, and nothing lies on the legend or on another number."""
+    coupler, crank = (np.linspace(*ends, 9) for ends in ((0.2, 0.20001), (0.08, 0.080001)))
+    study = ls.peaks(ls.grid(PRESS, {"coupler.length": coupler, "crank.length": crank}), of=["F32"], theta2=90)
+    ax = ls.plot.heat_map(study, "F32_peak")
+    best = study.F32_peak.argmin(["coupler.length", "crank.length"])
+    value, *places = map(float, re.findall(r"[0-9]+\.[0-9]+", legend(ax)[0]))
+    across, up = ax.get_xlabel(), ax.get_ylabel()
+    places = dict(zip((across.split(" [")[0], up.split(" [")[0]), places, strict=True))
+    assert abs(coupler - places["coupler length"]).argmin() == int(best["coupler.length"])
+    assert abs(crank - places["crank length"]).argmin() == int(best["crank.length"])
+    second = np.sort(study.F32_peak.values.ravel())[1]
+    assert abs(value - float(study.F32_peak.min())) < 0.5 * (second - float(study.F32_peak.min()))
+    ax.figure.canvas.draw()
+    inside = [label for label in ax.get_xticklabels() if coupler[0] <= label.get_position()[0] <= coupler[-1]]
+    ticks = [label.get_window_extent() for label in inside]
+    assert len(ticks) > 2 and all(one.x1 < other.x0 for one, other in pairwise(ticks))
+    axes = [axis for each in ax.figure.axes for axis in (each.xaxis, each.yaxis)]
+    assert {axis.get_offset_text().get_text() for axis in axes} == {""}
+    marks = [float(label.get_text()) for label in ax.get_yticklabels()]
+    np.testing.assert_allclose(marks, ax.get_yticks(), rtol=1e-9)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -32,6 +33,22 @@ def many_sizes(limits: tuple[float, float]) -> bool:
     return 0.0 < DECADE * limits[0] < limits[1]
 
 
+def digits(values: np.ndarray) -> int:
+    """Return the significant digits, four at least, in which numbers differ by a hundredth of their span."""
+    width, size = float(np.ptp(values)), float(np.max(np.abs(values)))
+    return min(max(4, math.ceil(math.log10(100.0 * size / width))), 15) if width else 4
+
+
+def plain(values: np.ndarray) -> Any:
+    """Return a function that writes ticks of an axis whole, without a power of ten or an offset beside it."""
+    significant = digits(values) + 1  # for ticks, of which some end in a 5
+
+    def tick(value: float, place: int | None = None) -> str:
+        return f"{value + 0.0:.{significant}g}".replace("-", "−")
+
+    return tick
+
+
 def norm(limits: tuple[float, float]) -> Any:
     """Return matplotlib's map from numbers to colours."""
     from matplotlib.colors import LogNorm, Normalize
@@ -50,7 +67,9 @@ def levels(limits: tuple[float, float]) -> np.ndarray:
 
 def color_bar(ax: Axes, colored: Any, item: Column, limits: tuple[float, float]) -> None:
     """Add a colour bar with round numbers, and with a pointed end where values are off its scale."""
-    round_numbers: dict[str, Any] = {"ticks": levels(limits), "format": "%g"} if many_sizes(limits) else {}
+    round_numbers: dict[str, Any] = {"format": plain(np.array(limits))}
+    if many_sizes(limits):
+        round_numbers = {"ticks": levels(limits), "format": "%g"}
     if item.words:
         round_numbers = {"ticks": range(len(item.words)), "format": lambda value, _: item.words[round(value)]}
     bar = ax.figure.colorbar(colored, ax=ax, label=item.text, extend=beyond(item.values, limits), **round_numbers)
