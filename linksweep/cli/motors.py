@@ -93,6 +93,8 @@ def motor_of(words: list[str]) -> AnyMotor:
         name, equals, text = pair.partition("=")
         if name in TRAIN:
             raise ValueError(f"--motor {kind}: {name} is no number of the motor itself: write it as --{name} {text}")
+        if not equals and name in needed:
+            raise ValueError(f"--motor {kind}: {name}: has no value; write it as {name}=VALUE")
         if not equals or name not in needed or name in values:
             once = f"must be one of {', '.join(needed)}, each once, as NAME=VALUE"
             raise ValueError(f'--motor {kind}: "{pair}": {once}{did_you_mean(name, needed)}')

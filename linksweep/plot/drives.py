@@ -20,6 +20,7 @@ from linksweep.results.compute import require_results
 from linksweep.results.origin.in_shown_units import results_in_shown_units, units_of
 from linksweep.results.sweep import sweep
 from linksweep.scene.shown_units import UnitSystem
+from linksweep.tables.of_drive import NO_SPEED
 from linksweep.tables.of_runs import failure_of
 
 if TYPE_CHECKING:
@@ -35,14 +36,6 @@ ON_MOTOR = {
     "motor_power": "motor power",
 }
 """Words on the axes of a steady cycle, by the stem of the extremes."""
-NO_SPEED = {
-    "not_whole": "the machine does not turn fully",
-    "stalls": "on its motor the machine stalls",
-    "runs_away": "on its motor the machine runs away",
-    "unstable": "the motion on its motor is unstable",
-    "not_found": "no motion was found that repeats",
-}
-"""Text of each status of a steady cycle that is not ok."""
 
 
 def flywheel(ds: xr.Dataset, *, ax: Axes | None = None) -> Axes:

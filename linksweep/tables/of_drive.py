@@ -61,13 +61,21 @@ STEADY = {  # title by variable, and the variable beside which less than 1e-12 i
     "cycle_time": ("time of a cycle", "cycle_time"),
 }
 
+NO_SPEED = {
+    "not_whole": "the machine does not turn fully",
+    "stalls": "on its motor the machine stalls",
+    "runs_away": "on its motor the machine runs away",
+    "unstable": "the motion on its motor is unstable",
+    "not_found": "no motion was found that repeats",
+}
+"""Text of each status of a steady cycle that is not ok."""
+
 
 def steady_table(cycle: xr.Dataset) -> Table:
     """Return the table of a machine on its motor; of one that does not keep turning, what it does."""
     word = cycle["status"].attrs["flag_meanings"].split()[int(cycle["status"])]
     if word != "ok":
-        words = "does not turn fully" if word == "not_whole" else word.replace("_", " ")
-        return Table(("on its motor", "", ""), [("the machine", words, "")], right=(1,))
+        return Table(("on its motor", "", ""), [(NO_SPEED[word], "", "")], right=(1,))
     rows: list[Row] = []
     for name, (title, beside) in STEADY.items():
         number, size = float(cycle[name]), abs(float(cycle[beside]))

@@ -66,6 +66,10 @@ def test_steady_prints_the_table_and_writes_the_cycle_and_its_figure(tmp_path, m
         (["press", "--motor", "dc", "stall=6"], '--motor dc: "stall=6": must be one of stall_torque, no_load_speed,'),
         (["press", *DC, "no_load_speed=9"], '"no_load_speed=9": must be one of stall_torque, no_load_speed, inertia,'),
         (["press", "--motor", "dc", "6 N m"], '"6 N m": must be one of'),
+        (
+            ["press", "--motor", "dc", "stall_torque=9", "no_load_speed"],
+            "--motor dc: no_load_speed: has no value; write it as no_load_speed=VALUE\n",
+        ),
         (["press", *DC, "ratio=5"], "--motor dc: ratio is no number of the motor itself: write it as --ratio 5\n"),
         (["press", "--motor", "dc"], "--motor dc: needs stall_torque and no_load_speed, each as NAME=VALUE"),
         (
@@ -105,5 +109,5 @@ def test_a_machine_that_does_not_turn_fully_has_no_figure_either(tmp_path, monke
     ls.save(replace(PRESS, mechanism=replace(PRESS.mechanism, ground=0.33)), "partly.toml")
     assert main(["steady", "partly.toml", *DC, "--plot", "cycle.png"]) == 2
     out, err = capsys.readouterr()
-    assert "the machine   does not turn fully" in out
+    assert "the machine does not turn fully" in out
     assert err == "linksweep: nothing to draw: the machine does not turn fully\n"

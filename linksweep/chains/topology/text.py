@@ -9,9 +9,10 @@ PIN = r"[A-Z][0-9]*"
 NAME = r"[^\W\d]\w*"
 RATIO = r"-?[0-9]+(?:/0*[1-9][0-9]*)?"
 PINS = rf"(?P<pins>{PIN}(?:-{PIN})+)"
+WHEEL = "a wheel is written as wheel D-E : -2 crank, a ratio that is a fraction as -5/2"
 FORMS = {
     "~": (rf"(?P<ends>{PIN}~{PIN})", "a cylinder is written as c1 P~B"),
-    ":": (rf"{PINS}:(?:(?P<ratio>{RATIO}) )?(?P<mate>{NAME})", "a wheel is written as wheel D-E : -2 crank"),
+    ":": (rf"{PINS}:(?:(?P<ratio>{RATIO}) )?(?P<mate>{NAME})", WHEEL),
     " on .* past ": (rf"on (?P<guide>{NAME}) past (?P<past>{PIN})", "a yoke is written as yoke on slide past B"),
     " past ": (rf"{PINS} past (?P<past>{PIN})", "a link past a pin is written as arm D-E past B"),
     " on ": (rf"(?P<pins>{PIN}) on (?P<guide>{NAME})", "a slider is written as ram F on slide"),
