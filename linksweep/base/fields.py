@@ -301,6 +301,11 @@ def is_plain(owner: Any) -> bool:
     return PLAIN_MARK in vars(owner)
 
 
+def unstated(value: Any) -> bool:
+    """Return whether a value is that of a field of one thing left out: None, or an empty text."""
+    return not value if isinstance(value, str) else value is None
+
+
 def left_out(value: Any) -> bool:
     """Return whether a value is that of a field left out: None, or an empty text, list or record."""
     if value is None or isinstance(value, (str, tuple, list)):

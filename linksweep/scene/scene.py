@@ -23,6 +23,7 @@ from linksweep.base.fields import (
     numbers,
     of_kind,
     parameter,
+    unstated,
 )
 from linksweep.base.frozen import bare, cached_copy, cached_property, field_values, normalise, with_sound
 from linksweep.base.public.clear_calls import clear_method
@@ -145,11 +146,10 @@ class Scene(ByContent):
         values = {name: own_label(name, value) for name, value in field_values(self).items()}
         if not isinstance(self.mechanism, Mechanism):
             return values
-        defaults, loads = self.mechanism.defaults, values["loads"]
+        machine, loads = self.mechanism, values["loads"]
         if isinstance(loads, tuple):
-            actions = ((load, isinstance(load, Action)) for load in loads)
-            values["loads"] = tuple(load.for_machine(self.mechanism) if known else load for load, known in actions)
-        return values | {name: default for name, default in defaults.items() if left_out(values[name])}
+            values["loads"] = tuple(load.for_machine(machine) if isinstance(load, Action) else load for load in loads)
+        return values | {name: default for name, default in machine.defaults.items() if unstated(values[name])}
 
     def _problems(self) -> list[str]:
         """Return the problems of each parameter by itself."""

@@ -22,6 +22,7 @@ import linksweep as ls
         (lambda: four_bar(branch=1), "branch = 1: must be one of open, crossed, both"),
         (lambda: four_bar(branch=None), "branch = None: must be one of open, crossed, both"),
         (lambda: scene(drive="crnk"), "drive = 'crnk': must be one of crank, coupler, rocker; did you mean \"crank\"?"),
+        (lambda: scene(drive=[]), "drive = []: must be one of crank, coupler, rocker"),
         (lambda: scene(drive="ground"), "drive = 'ground': must be one of crank, coupler, rocker"),
         (
             lambda: scene(drive=["crank"]),

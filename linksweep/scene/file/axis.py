@@ -142,7 +142,7 @@ def _coords(
         return {}
     coords = coords | {dim: table[dim] for dim in PLACES if dim in table}
     for dim, kind in zip(PLACES, ("angle", position_kind), strict=True):
-        if isinstance(places := coords.get(dim), list) and any(isinstance(place, str) for place in places):
+        if isinstance(places := coords.get(dim), list) and any(isinstance(place, str | bool) for place in places):
             coords[dim] = _read_nested(places, dim, kind, None, problems)
     for dim, labels in coords.items():
         if dim not in sizes:

@@ -380,3 +380,15 @@ def test_numbers_and_texts_with_units_need_no_pint():
     read = f"from linksweep.scene.file.reading import parse_scene; parse_scene({write_scene(SCENE)!r})"
     texts = "from linksweep.base.units import quantity; quantity('8 cm', 'length')"
     subprocess.run([sys.executable, "-c", f"import sys; {read}; {texts}; assert 'pint' not in sys.modules"], check=True)
+
+
+@pytest.mark.parametrize("places", ["[true, 120]", "[0, false]"])
+def test_a_truth_value_is_no_angle(places):
+    text = PRESS.replace('"-12 N m"', f'{{dim = "theta2", values = [1, 2], theta2 = {places}}}')
+    with pytest.raises(ValueError, match=r"theta2\[[12]\] = (true|false): must be a number"):
+        parse_scene(text, "press.toml")
+
+
+def test_an_empty_list_is_no_drive():
+    with pytest.raises(ValueError, match=r"press\.toml:[0-9]+: drive = \[\]: must be one of crank, coupler, rocker"):
+        parse_scene("drive = []\n" + PRESS, "press.toml")
