@@ -14,6 +14,7 @@ from linksweep.explorer.model.session import Session
 from linksweep.scene.parameters import free, replaced
 
 MACHINES = ("press", "engine", "quick-return", "watt-2", "knuckle-press", "scotch-yoke")
+FIVE_BAR = ls.example("geared-five-bar")
 
 
 @pytest.fixture
@@ -52,6 +53,15 @@ def test_sliders_of_zeros_reach_no_refused_number(path):
     replaced(scene, {path: one.low})
 
 
+def test_the_slider_of_a_pressure_angle_reaches_no_refused_number():
+    (one,) = (one for one in controls(FIVE_BAR) if one.path == "gears.wheel.pressure_angle")
+    assert (one.low, one.high, one.value) == (0.0, 89.0, 20.0)
+    (other,) = (one for one in controls(FIVE_BAR) if one.path == "gears.wheel.phase")
+    assert (other.low, other.high) == (-180.0, 180.0)
+    for end in (one.low, one.high):
+        replaced(FIVE_BAR, {one.path: end})
+
+
 def test_a_dragged_pin_lies_under_the_mouse():
     scene, place, angle = ls.example("press"), (0.15, 0.19), 40.0
     crank = 0.08 * np.array([math.cos(math.radians(angle)), math.sin(math.radians(angle))])
@@ -88,7 +98,6 @@ def test_a_ground_pin_takes_length_and_angle_of_the_frame():
     assert move.numbers == pytest.approx({"ground": 0.18 * math.sqrt(2.0), "ground_angle": -45.0})
 
 
-FIVE_BAR = ls.example("geared-five-bar")
 THREE_TO_TWO = replace(
     FIVE_BAR, mechanism=replace(FIVE_BAR.mechanism, links="crank A-B, wheel D-E : -3/2 crank, left B-C, right E-C")
 )

@@ -19,6 +19,8 @@ SIGNED = {"length", "angle", "force", "torque", "velocity", "acceleration", "ang
 ORDERS = {"angular_acceleration": 100.0, "acceleration": 10.0, "force": 100.0, "torque": 10.0, "length": 0.1}
 """Ends of the sliders of numbers that are 0, by kind, where the scene has no other of this kind."""
 SYMBOLS = {"degree": "°", "1": ""}
+MOST_PRESSURE_ANGLE = 89.0
+"""End of the slider of an angle that must be less than 90 degrees."""
 PARTS = {True: ("distance", "angle"), False: ("x", "y")}
 """Names of the two numbers of a point: polar or not."""
 
@@ -88,7 +90,9 @@ def written(unit: str) -> str:
 def _range(scene: Scene, path: str, value: float, kind: str) -> tuple[float, float]:
     """Return the ends of a slider: about the value, or where that is 0 as far as the scene's other numbers go."""
     if kind == "angle":
-        return min(-180.0, value), max(180.0, value)
+        low = -180.0 if _takes(scene, path, -180.0) else 0.0
+        high = 180.0 if _takes(scene, path, 180.0) else MOST_PRESSURE_ANGLE
+        return min(low, value), max(high, value)
     if value:
         low, high = sorted((0.5 * value, 1.5 * value))
         return low, high

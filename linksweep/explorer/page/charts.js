@@ -48,8 +48,8 @@ class Curves {
     const all = [...this.series, ...this.ghost].map(one => one.values);
     const cap = most(all.map(top)) || 1;
     const low = Math.max(-cap, Math.min(0, least(all.map(least)))), high = Math.min(cap, Math.max(0, most(all.map(most))));
-    const room = 0.06 * (high - low);
-    this.low = low < 0 ? low - room : 0;
+    const room = low < high ? 0.06 * (high - low) : 1; // of zeros alone, on both sides
+    this.low = low < 0 || low === high ? low - room : 0;
     this.high = high > 0 || low === 0 ? high + room : room;
   }
 

@@ -46,7 +46,7 @@ class Controls {
       field.value = shown(+range.value);
       this.change({[path]: +range.value}, current || this.gesture());
     });
-    field.addEventListener("change", () => this.change({[path]: field.value.replace("−", "-")}, this.gesture()));
+    field.addEventListener("change", () => this.change({[path]: typed(field.value)}, this.gesture()));
     field.addEventListener("keydown", event => { if (event.key === "Enter") field.blur(); event.stopPropagation(); });
     label.addEventListener("dblclick", () => this.change({[path]: value}, this.gesture()));
     this.rows[path] = {row, range, field, control};
@@ -84,6 +84,7 @@ class Controls {
 }
 
 const shown = value => number(value, 5);
+const typed = text => text.replaceAll("−", "-");
 
 function grouped(controls) {
   const groups = new Map();

@@ -32,7 +32,7 @@ function number(value, digits = 4) {
   if (!Number.isFinite(value)) return value > 0 ? "∞" : "−∞";
   const size = Math.abs(value);
   const text = size >= 1e6 || (size > 0 && size < 1e-4)
-    ? value.toExponential(Math.max(0, digits - 2)).replace(/(\.\d*?)0+e/, "$1e").replace(".e", "e").replace("e+", "e")
+    ? value.toExponential(Math.max(0, digits - 1)).replace(/(\.\d*?)0+e/, "$1e").replace(".e", "e").replace("e+", "e")
     : size >= 10 ** digits ? value.toFixed(0) : String(Number(value.toPrecision(digits)));
   return text.replace(/-/g, "−");
 }
