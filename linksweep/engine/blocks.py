@@ -41,8 +41,8 @@ def _on_a_line(memory: np.ndarray, size: int) -> np.ndarray:
 
 def _taken(size: int) -> np.ndarray:
     """Return free memory of this size, or not much larger; new memory where there is none."""
-    for key, memory in [*_free.items()]:
-        if size <= memory.nbytes <= 1.25 * size and _free.pop(key, None) is not None:  # else another thread took it
+    for memory in [*_free.values()]:
+        if size <= memory.nbytes <= 1.25 * size and _free.pop(id(memory), None) is not None:  # else another thread did
             return memory
     return np.empty(size, dtype=np.uint8)
 
@@ -53,10 +53,10 @@ def _give_back(memory: np.ndarray) -> None:
     Called wherever an array happens to die, in any thread: so there is no lock, only single operations on a dict.
     """
     _free[id(memory)] = memory
-    kept = [*_free.items()]
-    excess = sum(each.nbytes for _, each in kept) - MOST
-    for key, each in kept:
+    kept = [*_free.values()]
+    excess = sum(each.nbytes for each in kept) - MOST
+    for each in kept:
         if excess <= 0:
             return
-        if _free.pop(key, None) is not None:
+        if _free.pop(id(each), None) is not None:
             excess -= each.nbytes

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from functools import cached_property, lru_cache
+from functools import lru_cache
 from itertools import accumulate
 from typing import Any, NamedTuple
 
@@ -24,6 +24,7 @@ from linksweep.engine.kernel.instructions import REGISTER
 from linksweep.engine.kernel.side_by_side import SideBySideWriter, fits_side_by_side, parity
 from linksweep.engine.kernel.vectors import WIDEST, width_in_stages
 from linksweep.engine.kernel.writer import Reduction, Writer
+from linksweep.engine.once import once
 from linksweep.engine.patience import Patience
 from linksweep.engine.threads import over_threads
 from linksweep.engine.trace.graph import Node
@@ -110,16 +111,16 @@ class Runner(Patience):
     latest: tuple[np.ndarray | None, tuple[int, ...]] = (None, ())
     """Profiles of the latest run, often the table of a grid that is kept, and their parities."""
 
-    @cached_property
+    @once
     def plan(self) -> Plan:
         """The plan as kernels follow it."""
         return self.traced.with_arctangents_expanded()
 
-    @cached_property
+    @once
     def fused(self) -> Writer:
         return Writer(self.plan, self.reductions)
 
-    @cached_property
+    @once
     def streamed(self) -> Writer:
         """The kernel that writes results past the caches, a line of them at once: halves of lines that do not follow
         each other go to memory one by one, and took three times as long (AMD Zen 3)."""

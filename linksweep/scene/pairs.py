@@ -14,7 +14,7 @@ import numpy as np
 
 from linksweep.base.frozen import cached_beside
 from linksweep.engine.run import Field, Fields, Grid, Places, evaluate
-from linksweep.engine.trace.plan import Plan, plan
+from linksweep.engine.trace.plan import plan
 
 if TYPE_CHECKING:
     from linksweep.scene.inputs import Inputs
@@ -147,16 +147,7 @@ def different_designs(scene: Scene, names: tuple[str, ...]) -> Array:
     return designs[tuple(slice(None if dim in loops else 1) for dim in inputs.sizes)].ravel()
 
 
-def inputs_along(dim: str, request: Plan, inputs: Inputs, places: Places) -> dict[str, Field]:
-    """Return the inputs that a plan takes, those with dims as one number for each place along `dim`."""
-    return {
-        name: Field((dim,), field.values[tuple(places[own] for own in field.dims)]) if field.dims else field
-        for name, field in inputs.fields.items()
-        if name in request.inputs
-    }
-
-
-def some_of(table: Table, which: Array) -> Table:
+def some_of(table: Table, which: Array | slice) -> Table:
     """Return the rows of a table, a named tuple of equally long arrays, with these indices."""
     return table._make(numbers[which] for numbers in table)
 
@@ -175,6 +166,12 @@ def by_row(rows: Array, values: Array, count: int) -> Array:
     table = np.full((count, nth.max(initial=-1) + 1, *values.shape[1:]), np.nan)
     table[rows, nth] = values[order]
     return table
+
+
+def with_repeated(table: Array, again: Array) -> Array:
+    """Return a table in which each number that is marked `again` repeats the last one of its row that is not."""
+    own = np.where(again, 0, np.arange(table.shape[1]))
+    return np.take_along_axis(table, np.maximum.accumulate(own, axis=1), axis=1)
 
 
 def in_order(table: Array) -> Array:

@@ -2,6 +2,7 @@
 
 import os
 import threading
+import time
 from dataclasses import replace
 
 import numpy as np
@@ -10,6 +11,7 @@ import xarray as xr
 
 import linksweep as ls
 from linksweep.engine import run, threads
+from linksweep.engine.once import once
 from linksweep.engine.peaks import laid_out
 from linksweep.engine.threads import at_most, limits_threads, most_threads, over_threads, shares
 from linksweep.results.peak_search.limits import limits_of
@@ -121,3 +123,28 @@ def test_a_limit_ends_with_the_function_and_none_keeps_it():
     with pytest.raises(ValueError, match=r"threads = 0: must be a whole number, 1 or more"):
         most(threads=0)
     assert most() == cores >= 1
+
+
+def test_a_property_is_computed_once_where_several_threads_ask_for_it():
+    """`functools.cached_property` computes it in each of them, from Python 3.12 on."""
+    meeting, computed = threading.Barrier(4, timeout=20.0), []
+
+    class Owner:
+        @once
+        def number(self) -> int:
+            computed.append(threading.get_ident())
+            time.sleep(0.01)
+            return len(computed)
+
+    owner, found = Owner(), []
+
+    def ask() -> None:
+        meeting.wait()
+        found.append(owner.number)
+
+    asking = [threading.Thread(target=ask) for _ in range(4)]
+    for thread in asking:
+        thread.start()
+    for thread in asking:
+        thread.join()
+    assert found == [1] * 4 and len(computed) == 1

@@ -191,9 +191,6 @@ class Translator(Values):
 
     def _if_statement(self, node: ast.If) -> None:
         test = self.truth(self._value(node.test))
-        if isinstance(test, bool):
-            self._statements(node.body if test else node.orelse)
-            return
         body, other, after = (self.builder.append_basic_block() for _ in range(3))
         self.builder.cbranch(test, body, other)
         for block, statements in ((body, node.body), (other, node.orelse)):
@@ -206,7 +203,7 @@ class Translator(Values):
         head, body, after = (self.builder.append_basic_block() for _ in range(3))
         self.builder.branch(head)
         self.builder.position_at_end(head)
-        self.builder.cbranch(self.typed(self.truth(self._value(node.test))), body, after)
+        self.builder.cbranch(self.truth(self._value(node.test)), body, after)
         self.builder.position_at_end(body)
         self._in_loop(node.body, after)
         self._go(head)
@@ -265,8 +262,7 @@ class Translator(Values):
     def _unaryop(self, node: ast.UnaryOp) -> Any:
         value = self._value(node.operand)
         if isinstance(node.op, ast.Not):
-            truth = self.truth(value)
-            return not truth if isinstance(truth, bool) else self.builder.not_(truth)
+            return self.builder.not_(self.truth(value))
         if not isinstance(node.op, ast.USub):
             self._refuse(node)
         if isinstance(value, int | float):
@@ -288,21 +284,17 @@ class Translator(Values):
         return conditions[0] if len(conditions) == 1 else reduce(self.builder.and_, map(self.typed, conditions))
 
     def _boolop(self, node: ast.BoolOp) -> Any:
-        """Translate `and` and `or`: what need not be known is left out."""
-        known, ends = self.truth(self._value(node.values[0])), isinstance(node.op, ast.Or)
+        """Translate `and` and `or`: what need not be known is not evaluated."""
+        known = self.truth(self._value(node.values[0]))
 
         def rest() -> Any:
             others = node.values[1:]
             return self.truth(self._value(others[0] if len(others) == 1 else ast.BoolOp(node.op, others)))
 
-        if isinstance(known, bool):
-            return ends if known is ends else rest()
-        return self._chosen(known, *((lambda: True, rest) if ends else (rest, lambda: False)))
+        return self._chosen(known, *((lambda: True, rest) if isinstance(node.op, ast.Or) else (rest, lambda: False)))
 
     def _ifexp(self, node: ast.IfExp) -> Any:
         test = self.truth(self._value(node.test))
-        if isinstance(test, bool):
-            return self._value(node.body if test else node.orelse)
         return self._chosen(test, lambda: self._value(node.body), lambda: self._value(node.orelse))
 
     def _chosen(self, test: Any, *sides: Callable[[], Any]) -> Any:

@@ -82,8 +82,7 @@ class Values:
 
     def truth(self, value: Any) -> Any:
         """Return whether a number is not 0."""
-        if isinstance(value, int | float):
-            return bool(value)
+        value = self.typed(value)
         return value if value.type == self.write.condition else self.compared(ast.NotEq, value, 0)
 
     # ------------------------------------------------------------------------------------------ arithmetic

@@ -22,9 +22,9 @@ import math
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from functools import cached_property
 
 from linksweep.engine.kernel.pipeline import Pipeline, pipeline
+from linksweep.engine.once import once
 from linksweep.engine.trace.graph import Node, in_order, leading_to, operands
 from linksweep.engine.trace.plan import Plan
 
@@ -99,7 +99,7 @@ class Writer:
     def write(self, depth: int, line: str) -> None:
         self.kernel.append("    " * depth + line)
 
-    @cached_property
+    @once
     def source(self) -> str:
         """Return the source of the kernel."""
         self.write(0, f"def kernel({ARGUMENTS}):")
@@ -182,12 +182,10 @@ class Writer:
                 self._define(depth, node, self._single(node))
 
     def _single(self, node: Node) -> str:
-        """Return the place of a number that depends on no angle, or the number itself."""
+        """Return the place of a number that depends on no angle."""
         if node in self.values:
             return f"values[{self.values[node]}]"
-        if node in self.parameters:
-            return f"parameters[{self._at('parameter', self.parameters.index(node), node)}]"
-        return self.name(node)
+        return f"parameters[{self._at('parameter', self.parameters.index(node), node)}]"
 
     def _sample_loop(self, level: int) -> None:
         """Write the loop over the samples."""

@@ -61,27 +61,23 @@ class LaidOut(NamedTuple):
         """Return a search of arguments of these kinds: interpreted, or compiled as the functions are."""
         return translated(search, kinds) if self.lanes > 1 else search
 
-    def arguments(self, first: int, last: int, places: int | None = None) -> tuple[Any, ...]:
+    def arguments(self, first: int, last: int, places: int = 0) -> tuple[Any, ...]:
         """Return the arguments that searches of blocks `first` … `last` have in common, with new arrays to work in: for
         samples of two half turns, or for some at so many places."""
-        lanes, constants = self.lanes, self.functions.constants * self.lanes
-        places = places or 2 * self.half + 2
-        blocks = min(last - first, turns.BLOCKS)
-        return (
-            np.array(self.shape, dtype=np.int64), *self.parameters, grades(self.half, self.evenly),
-            *self.functions.passed, np.zeros((blocks, constants)),
-            np.zeros(2 * places * lanes + self.functions.shared),
-            np.zeros((4 * self.half + 1) * len(self.signals) * lanes),
-        )  # fmt: skip
+        return self._arguments(min(last - first, turns.BLOCKS), (), places, self.functions.shared)
 
     def arguments_of_pieces(self, together: int) -> tuple[Any, ...]:
         """Return those of searches of the pieces of `together` blocks of designs: a row of them for each piece."""
-        lanes, pieces = self.lanes, together * self.shape[0]
+        pieces = together * self.shape[0]
+        return self._arguments(pieces, (pieces,))
+
+    def _arguments(self, rows: int, of_tables: tuple[int, ...], places: int = 0, shared: int = 0) -> tuple[Any, ...]:
+        places = places or 2 * self.half + 2
         return (
-            np.array(self.shape, dtype=np.int64), *self.parameters, grades(self.half), *self.functions.passed,
-            np.zeros((pieces, self.functions.constants * lanes)),
-            np.zeros((pieces, 2 * (2 * self.half + 2) * lanes)),
-            np.zeros((pieces, (4 * self.half + 1) * len(self.signals) * lanes)),
+            np.array(self.shape, dtype=np.int64), *self.parameters, grades(self.half, self.evenly),
+            *self.functions.passed, np.zeros((rows, self.functions.constants * self.lanes)),
+            np.zeros((*of_tables, 2 * places * self.lanes + shared)),
+            np.zeros((*of_tables, (4 * self.half + 1) * len(self.signals) * self.lanes)),
         )  # fmt: skip
 
     @property

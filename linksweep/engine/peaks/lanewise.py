@@ -14,6 +14,7 @@ from linksweep.engine.kernel.instructions import REGISTER as LANES
 from linksweep.engine.kernel.instructions import Instructions
 from linksweep.engine.kernel.machine_code import INTEGER, ROW, TABLE, MachineCode, machine_code
 from linksweep.engine.kernel.translate import written_by
+from linksweep.engine.once import once
 from linksweep.engine.trace.graph import Node
 from linksweep.engine.trace.operators import OPERATORS, Traced, interpret, traced
 
@@ -35,7 +36,7 @@ class Lanewise:
     def __init__(self, function: Callable[..., tuple[Node, ...]], inputs: tuple[int, ...], outputs: tuple[int, ...]):
         self.function, self.rows, self.outputs = function, inputs, outputs
 
-    @cached_property
+    @once
     def traced(self) -> Traced:
         return traced(self.function, len(self.rows))
 

@@ -80,11 +80,7 @@ def search(
             if place_samples(own, lanes, grades, CLOSER if sparse else 1.0, x) > 0:
                 call(share, (own, x))
             call(sample, (own, x, rows))
-            compare_samples(rows, SAMPLES, columns, state)
-            for k in range(columns):
-                pick_sample(samples, k, state, k)
-            look_beside(state, columns)
-            try_vertices(own, state, columns, lanes, -1, evaluate)
+            confirm_summits(samples, own, state, evaluate)
             for signal in range(signals):
                 column, tag = signal * lanes, signal * width + block * lanes
                 for row in range(EVALUATIONS + 1):
@@ -95,16 +91,29 @@ def search(
                         if count + 2 * SAMPLES > brackets.shape[1]:
                             refine(brackets, count, lanes, width, start * lanes, constants, gathered, evaluate, best)
                             count = 0
-                        k = column + lane
-                        close = close or best[PEAK, tag + lane] < state[HIDDEN, k]
-                        trusted = smooth and not sparse and state[CONFIRMED, k] > 0.0
-                        known = int(state[SUMMIT, k]) if trusted else -1
-                        count = open_brackets(
-                            samples, signal, lane, known, False, close, tag + lane, brackets, count, best
-                        )
+                        trusted, of = smooth and not sparse, tag + lane
+                        count = open_unsettled(samples, signal, lane, trusted, close, state, of, brackets, count, best)
         refine(brackets, count, lanes, width, start * lanes, constants, gathered, evaluate, best)
         for signal in range(signals):
             place_angles(best, signal * width + start * lanes, signal * width + stop * lanes)
+
+
+def confirm_summits(samples, constants, state, evaluate):
+    """Predict the peak of each signal of designs side by side from its best summit, and confirm it by trials."""
+    rows, _x, _half, lanes, columns = samples
+    compare_samples(rows, SAMPLES, columns, state)
+    for k in range(columns):
+        pick_sample(samples, k, state, k)
+    look_beside(state, columns)
+    try_vertices(constants, state, columns, lanes, -1, evaluate)
+
+
+def open_unsettled(samples, signal, lane, trusted, close, state, tag, brackets, count, best):
+    """Open brackets of a signal whose peak is not final, or may lie between samples; return their number."""
+    k = signal * samples[3] + lane
+    known = int(state[SUMMIT, k]) if trusted and state[CONFIRMED, k] > 0.0 else -1
+    hidden = close or best[PEAK, tag] < state[HIDDEN, k]
+    return open_brackets(samples, signal, lane, known, False, hidden, tag, brackets, count, best)
 
 
 def try_vertices(constants, state, columns, lanes, number, evaluate):

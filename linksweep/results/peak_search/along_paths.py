@@ -243,16 +243,9 @@ def _search(group: Group, signals: tuple[str, ...], paths: Paths, current: Array
     return Best(value, angle, bound, np.full(value.shape, samples[:, None], dtype=float))
 
 
-class Rises(NamedTuple):
-    """Rises of a signal, each about one summit: path, angle [degree] and height."""
-
-    path: Array
-    angle: Array
-    height: Array
-
-
-def rises(group: Group, signal: str, paths: Paths, level: Array) -> Rises:
-    """Return all rises of a signal on paths that may reach the level of their path, each refined on its own."""
+def rises(group: Group, signal: str, paths: Paths, level: Array) -> tuple[Array, Array, Array]:
+    """Return path, angle [degree] and height of all rises of a signal on paths that may reach the level of their path,
+    each refined on its own."""
     values_along = _values_along(group, (signal,), paths)
     lanes, count, _ = _opened(values_along, (signal,), paths)
     count = _keep_promising(lanes, count, level, paths, 1)
@@ -267,7 +260,7 @@ def rises(group: Group, signal: str, paths: Paths, level: Array) -> Rises:
     with np.errstate(all="ignore"):
         refine(lanes, count, best, values_at)
     angle = angle_in_period(paths.angles(path, best[brackets.PEAK_X]), group.scene.period)
-    return Rises(path, angle, best[brackets.PEAK])
+    return path, angle, best[brackets.PEAK]
 
 
 def _values_along(group: Group, signals: tuple[str, ...], paths: Paths) -> Callable[[Array, Array], Array]:

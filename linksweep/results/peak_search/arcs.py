@@ -31,7 +31,7 @@ from linksweep.results.peak_search.paths import (
     windows_about,
 )
 from linksweep.scene.curves.quick import STEP
-from linksweep.scene.pairs import Array, in_order
+from linksweep.scene.pairs import Array, in_order, with_repeated
 from linksweep.scene.scene import Scene
 
 PER_ARC = 192
@@ -170,10 +170,7 @@ def _samples_and_cuts(group: Group, middle: Array, half: Array, at_jumps: Array,
 def _once(x: Array) -> Array:
     """Return samples (arc, sample) in order, those made equal whose angles differ by rounding: between several so close
     the highest is one of rounding, and its neighbours hide a summit beyond them."""
-    sine = np.sin(x)
-    again = np.diff(sine, axis=1, prepend=-np.inf) < SAME
-    first = np.where(again, 0, np.arange(x.shape[1]))
-    return np.take_along_axis(x, np.maximum.accumulate(first, axis=1), axis=1)
+    return with_repeated(x, np.diff(np.sin(x), axis=1, prepend=-np.inf) < SAME)
 
 
 def _quick_and_even(group: Group) -> Array:

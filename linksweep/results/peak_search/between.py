@@ -1,4 +1,4 @@
-"""Kinds of assembly, positions of designs at shared crank angles, and tables of numbers that belong to designs."""
+"""Kinds of assembly, half turns, and quantities of designs of a scene, each with its own value of every parameter."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 
 from linksweep.engine.quantity import Table
-from linksweep.engine.run import Fields, Grid, evaluate
+from linksweep.engine.run import Field, Fields, Grid, evaluate
 from linksweep.engine.trace.plan import InputForms, Plan, plan
 from linksweep.scene.dimensions import aligned
-from linksweep.scene.pairs import Array, changes, inputs_along, places_of, quantities_at
+from linksweep.scene.pairs import Array, changes, places_of, quantities_at
 from linksweep.scene.scene import Scene
 
 EVERYWHERE, PARTLY, NEVER = 0.0, 1.0, 2.0
@@ -38,9 +38,9 @@ def driven_elsewhere(scene: Scene) -> bool:
 def one_by_one(
     scene: Scene, designs: Array, table: Table, names: tuple[str, ...], own: Fields, places: InputForms
 ) -> tuple[Plan, Fields]:
-    """Return the plan of quantities of a table between samples, and its inputs: a value for each of these designs along
-    the dim `ONE`, and `own` ones besides; `places` are the forms of the search's own inputs. Those that change over the
-    angle are left to the table."""
+    """Return the plan of quantities of a table, and its inputs: a value for each of these designs along the dim `ONE`,
+    and `own` ones besides; `places` are the forms of inputs that place samples. Others that change over the angle are
+    left to the table."""
     inputs, index = scene.at_one_angle.inputs, scene.mechanism.index
     forms = tuple(
         (name, (ONE,) if isinstance(form, tuple) and form else form)
@@ -48,21 +48,20 @@ def one_by_one(
         if not (isinstance(form, tuple) and index in form)
     )
     request = plan(table, names, (*forms, *((name, field.dims) for name, field in own.items()), *places))
-    others = inputs._replace(fields={name: field for name, field in inputs.fields.items() if name not in own})
-    fields = inputs_along(ONE, request, others, places_of(inputs.sizes, designs))
+    at = places_of(inputs.sizes, designs)
+    fields = {
+        name: Field((ONE,), field.values[tuple(at[dim] for dim in field.dims)]) if field.dims else field
+        for name, field in inputs.fields.items()
+        if name in request.inputs and name not in own
+    }
     return request, {**fields, **own}
 
 
 def designs_on(scene: Scene, designs: Array, names: tuple[str, ...], grid: Grid) -> tuple[Plan, Fields]:
     """Return the plan of quantities for which nothing but the angles of a grid changes from sample to sample, and its
     inputs: a value for each of these designs along the dim `ONE`."""
-    inputs = scene.at_one_angle.inputs
-    forms = tuple(
-        (name, (ONE,) if isinstance(form, tuple) and form and name not in grid.names else form)
-        for name, form in inputs.forms
-    )
-    request = plan(scene.table, names, forms)
-    return request, inputs_along(ONE, request, inputs, places_of(inputs.sizes, designs))
+    rows = tuple((name, form) for name, form in scene.at_one_angle.inputs.forms if name in grid.names)
+    return one_by_one(scene, designs, scene.table, names, {}, rows)
 
 
 def number_of(scene: Scene, number: Any, designs: Array) -> Array:

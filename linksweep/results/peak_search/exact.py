@@ -276,10 +276,9 @@ def _fused(scene: Scene, signals: tuple[str, ...], designs: Array, smooth: bool)
     peaks = {signal: nothing(field) for signal, field in empty(scene, signals).items()}
     places = ((TANGENT, (scene.mechanism.index, ONE)), (FAR, (scene.mechanism.index,)))
     for group in groups(scene, designs, AT_ONCE):
-        rows, middle = np.arange(len(group.designs)), group.number(scene.mechanism.near_toggle_angle)
-        names, table = (*signals, *WIDTHS), scene.table.between_samples
-        request, inputs_of_group = group.one_by_one(table, names, rows, {}, places)
-        for some in find_peaks(request, signals, inputs_of_group, {ONE: len(rows)}, smooth, sparse):
+        middle = group.number(scene.mechanism.near_toggle_angle)
+        request, own = group.one_by_one(scene.table.between_samples, (*signals, *WIDTHS), {}, places)
+        for some in find_peaks(request, signals, own, {ONE: len(group.designs)}, smooth, sparse):
             angles = angle_in_period(some.angle + middle, scene.period)
             for signal, *numbers in zip(some.signals, some.value, angles, some.beyond, some.evaluations, strict=True):
                 put(peaks[signal], group, tuple(numbers))

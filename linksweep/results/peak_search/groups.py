@@ -15,7 +15,7 @@ from linksweep.engine.run import Field, Fields, Places, evaluate
 from linksweep.engine.trace.plan import InputForms, Plan, plan
 from linksweep.results.peak_search.between import EVERYWHERE, ONE, PARTLY, designs_on, number_of, one_by_one
 from linksweep.results.peak_search.limits import Limits, limits_of, signals_of
-from linksweep.scene.pairs import Array, changes_by_pairs, different_designs, places_of, quantities_at
+from linksweep.scene.pairs import Array, changes_by_pairs, different_designs, places_of, quantities_at, some_of
 from linksweep.scene.parameters import replaced
 from linksweep.scene.scene import Scene
 
@@ -47,7 +47,8 @@ class Group(NamedTuple):
     def some(self, rows: Array) -> Group:
         """Return the designs in these rows of the group."""
         places = {dim: at[rows] for dim, at in self.places.items()}
-        return self._replace(designs=self.designs[rows], places=places, limits=self.limits and self.limits.some(rows))
+        limits = self.limits and some_of(self.limits, rows)
+        return self._replace(designs=self.designs[rows], places=places, limits=limits)
 
     def values(self, names: tuple[str, ...], rows: Array, angles: Array) -> Array:
         """Return values (names, pairs) at pairs of a design of the group, by its row, and an angle [degree]."""
@@ -84,10 +85,10 @@ class Group(NamedTuple):
         return self.limits.zeros_of(self.scene.table.limits or (), kind)
 
     def one_by_one(
-        self, table: Table, names: tuple[str, ...], rows: Array, own: Fields, places: InputForms
+        self, table: Table, names: tuple[str, ...], own: Fields, places: InputForms = ()
     ) -> tuple[Plan, Fields]:
-        """Return `one_by_one` of the designs in these rows of the group."""
-        return one_by_one(self.scene, self.designs[rows], table, names, own, places)
+        """Return `one_by_one` of the group's designs."""
+        return one_by_one(self.scene, self.designs, table, names, own, places)
 
     def number(self, number: Any) -> Array:
         """Return a parameter of the scene, or a number computed from parameters, for each of these designs."""
@@ -112,7 +113,7 @@ def groups(scene: Any, designs: Array, at_once: int = AT_ONCE, own_at_once: int 
         part = slice(first, first + step)
         places = places_of(inputs.sizes, designs[part])
         group = _with_own_loads(scene, places) if own else Group(scene, designs[part], places, scene.quick.angles)
-        yield group._replace(limits=limits and limits.some(part))
+        yield group._replace(limits=limits and some_of(limits, part))
 
 
 def assembled_groups(
@@ -145,8 +146,8 @@ def _limits(scene: Scene, designs: Array) -> Limits | None:
     sizes, limits = limits_of(scene.unloaded)
     places = places_of(scene.at_one_angle.inputs.sizes, designs)
     if not sizes:
-        return limits.some(np.zeros(len(designs), int))
-    return limits.some(np.ravel_multi_index([places[dim] for dim in sizes], tuple(sizes.values())))
+        return some_of(limits, np.zeros(len(designs), int))
+    return some_of(limits, np.ravel_multi_index([places[dim] for dim in sizes], tuple(sizes.values())))
 
 
 @singledispatch

@@ -90,10 +90,6 @@ class Limits(NamedTuple):
     near_toggle_width: Array
     zeros: Array
 
-    def some(self, rows: Array | slice) -> Limits:
-        """Return the limits of the designs in these rows."""
-        return Limits(*(table[rows] for table in self))
-
     def zeros_of(self, limits: tuple[Limit, ...], kind: str) -> Array:
         """Return the zeros (design, nth) [degree] of one kind, of these limits."""
         parts = [k for k, limit in enumerate(limits) if limit.zeros == kind]

@@ -27,7 +27,7 @@ from linksweep.results.peak_search.between import driven_elsewhere
 from linksweep.results.peak_search.friction.contacts import contact_angles
 from linksweep.results.peak_search.groups import Group
 from linksweep.results.peak_search.limits import graded_samples
-from linksweep.scene.pairs import Array, by_row, in_order, in_period, joined
+from linksweep.scene.pairs import Array, by_row, in_order, in_period, joined, with_repeated
 from linksweep.scene.scene import Scene
 
 PER_TURN = 720
@@ -170,8 +170,7 @@ def _merged(x: Array) -> Array:
     gap = np.diff(x, axis=1, prepend=x[:, :1], append=x[:, -1:])
     with np.errstate(invalid="ignore"):
         close = gap[:, 1:-1] < MERGED * np.fmax(gap[:, :-2], gap[:, 2:])
-    first = np.where(np.pad(close, ((0, 0), (1, 0))), 0, np.arange(x.shape[1]))
-    return np.take_along_axis(x, np.maximum.accumulate(first, axis=1), axis=1)
+    return with_repeated(x, np.pad(close, ((0, 0), (1, 0))))
 
 
 def _graded_over_period(group: Group, step: int = 1) -> Array:
@@ -266,9 +265,7 @@ def distinct(angles: Array, least: float = ASIDE) -> Array:
     """Return angles (design, nth) in order, those made equal that differ by rounding, as where two slides turn round
     together: between samples so close a signal shows no slope. `least` is the least difference of others."""
     x = np.sort(angles, axis=1)
-    close = np.diff(x, axis=1, prepend=-np.inf) < least
-    first = np.where(close, 0, np.arange(x.shape[1]))
-    return np.take_along_axis(x, np.maximum.accumulate(first, axis=1), axis=1)
+    return with_repeated(x, np.diff(x, axis=1, prepend=-np.inf) < least)
 
 
 def _changes_of_sign(group: Group, name: str) -> Array:

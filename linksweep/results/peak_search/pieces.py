@@ -198,9 +198,7 @@ def _directions_at(group: Group, pieces: Pieces, share: Array) -> Array:
     names, angle = scene.mechanism.directions(), pieces.start + share * (pieces.end - pieces.start)
     places = {TANGENT: pieces.tangents(angle), FAR: pieces.half}
     own = {name: _of_pieces(values) for name, values in places.items()} | speed_at_one_angle(group)
-    request, inputs = group.one_by_one(scene.table.between_samples, names, np.arange(shape[0]), own, ())
-    values = evaluate(request, inputs, scene.grid(1), dict(zip((ONE, PIECE), shape, strict=True)))
-    return np.stack([np.broadcast_to(aligned(values[name], (ONE, PIECE)), shape) for name in names])
+    return _values(group, scene.table.between_samples, names, own, shape)
 
 
 def _between_jumps(group: Group) -> Pieces:
@@ -291,15 +289,20 @@ def _angles(pieces: Pieces, inputs: Fields, at: tuple[Array, ...], tangent: Arra
 def values_at(group: Group, names: tuple[str, ...], angles: Array) -> Array:
     """Return values (name, design, nth) of quantities at angles (design, nth) from the near-toggle [degree]: at the
     starts of pieces."""
-    scene, known = group.scene, np.full(len(angles), angles.shape[1])
+    known = np.full(len(angles), angles.shape[1])
     pieces = Pieces(angles, angles + SHORTEST, half_turn_of(angles), known, np.empty((0, *angles.shape)))
-    if scene.mechanism.directions():
+    if group.scene.mechanism.directions():
         pieces = pieces._replace(directions=_directions_at(group, pieces, np.zeros((1, 1))))
     table, own = _on_own_pieces(group, pieces)
     start = {ALONG: Field((), np.zeros(())), END: Field((), np.zeros(()))}
-    request, inputs = group.one_by_one(table, names, np.arange(len(angles)), own | start, ())
-    values = evaluate(request, inputs, scene.grid(1), dict(zip((ONE, PIECE), angles.shape, strict=True)))
-    return np.stack([np.broadcast_to(aligned(values[name], (ONE, PIECE)), angles.shape) for name in names])
+    return _values(group, table, names, own | start, angles.shape)
+
+
+def _values(group: Group, table: Table, names: tuple[str, ...], own: Fields, shape: tuple[int, ...]) -> Array:
+    """Return values (name, design, piece) of quantities of a table, each at one place on a piece."""
+    request, inputs = group.one_by_one(table, names, own)
+    values = evaluate(request, inputs, group.scene.grid(1), dict(zip((ONE, PIECE), shape, strict=True)))
+    return np.stack([np.broadcast_to(aligned(values[name], (ONE, PIECE)), shape) for name in names])
 
 
 def _evaluated(group: Group, pieces: Pieces, names: tuple[str, ...]) -> tuple[Plan, Fields]:
@@ -309,7 +312,7 @@ def _evaluated(group: Group, pieces: Pieces, names: tuple[str, ...]) -> tuple[Pl
     widths = np.minimum(_widths(pieces, start, end, *group.near_toggles()), pieces.widths)
     own |= {name: _of_pieces(values) for name, values in zip(WIDTHS_AT_ENDS, widths, strict=True)}
     places = ((ALONG, (index, ONE, PIECE)), (END, (index,)))
-    return group.one_by_one(table, (*names, *WIDTHS), np.arange(len(group.designs)), own, places)
+    return group.one_by_one(table, (*names, *WIDTHS), own, places)
 
 
 def _on_own_pieces(group: Group, pieces: Pieces) -> tuple[Table, dict[str, Field]]:

@@ -292,8 +292,9 @@ def _rules(
         # no matrix product: the order in which it sums, and so the last bit, depends on the number of pieces
         weighted = samples * OUTER, samples * INNER, np.abs(samples) * OUTER
         outer, inner, size = (products.sum(axis=-1) for products in weighted)
-        at_ends = (np.abs((samples * end).sum(axis=-1)) for end in (AT_START, AT_END))
-        missed = KINKED * sum(map(np.where, _clear_of_toggles(paths, pieces), at_ends, (0.0, 0.0)))
+        at_start, at_end = (np.abs((samples * end).sum(axis=-1)) for end in (AT_START, AT_END))
+        clear_start, clear_end = _clear_of_toggles(paths, pieces)
+        missed = KINKED * (np.where(clear_start, at_start, 0.0) + np.where(clear_end, at_end, 0.0))
     return Rules(outer, inner, missed, size, blur)
 
 

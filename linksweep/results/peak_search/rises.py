@@ -36,7 +36,7 @@ def equal_rises(scene: Scene, signal: str, designs: Array, level: Array) -> Equa
     """Return all rises of a signal of these designs that reach a level, one for each design."""
     signal = _known(scene, (signal,))[0]
     parts = [Equals(np.empty(0, dtype=int), np.empty(0), np.empty(0))]
-    for rows, kind, group in _by_assembly(scene, (signal,), designs):
+    for rows, kind, group in _by_assembly(scene, designs):
         for paths in (paths_of_group(group) for paths_of_group in paths_of(scene, kind)):
             if len(paths.row):
                 path, angle, height = rises(group, signal, paths, level[rows[paths.row]])
@@ -48,7 +48,7 @@ def equal_rises(scene: Scene, signal: str, designs: Array, level: Array) -> Equa
 def at_arc_ends(scene: Scene, designs: Array, angles: Array, near: float) -> Array:
     """Return whether an angle [degree] of each of these designs is the end of one of its arcs."""
     at_end = np.zeros(len(designs), dtype=bool)
-    for rows, kind, group in _by_assembly(scene, (), designs):
+    for rows, kind, group in _by_assembly(scene, designs):
         if kind == PARTLY:
             ends = np.concatenate(arc_ends(group), axis=1)
             away = in_period(angles[rows, None] - ends + near, scene.period_of_motion)
@@ -65,7 +65,7 @@ def sector_peaks(scene: Scene, signals: tuple[str, ...], sectors: int) -> tuple[
     designs = np.arange(int(np.prod(tuple(sizes.values()), dtype=int)))
     value, angle = np.full((2, len(signals), len(designs), sectors), np.nan)
     pieces = partial(arcs_within, (0.0, scene.period), pieces=sectors)
-    for rows, _, group in _by_assembly(scene, signals, designs):
+    for rows, _, group in _by_assembly(scene, designs):
         paths = pieces(group)
         lowest = np.full((len(paths.row), len(signals)), -np.inf)
         heights, angles, *_ = highest(group, signals, paths, lowest)
@@ -87,7 +87,7 @@ def _known(scene: Scene, signals: tuple[str, ...]) -> tuple[str, ...]:
     return tuple(known_names(scene.at_one_angle, signals, known).values())
 
 
-def _by_assembly(scene: Scene, signals: tuple[str, ...], designs: Array) -> Iterator[tuple[Array, float, Group]]:
+def _by_assembly(scene: Scene, designs: Array) -> Iterator[tuple[Array, float, Group]]:
     """Yield these designs in groups of one kind of assembly that move, with their rows and the kind."""
     first = 0
     for group in groups(scene, designs):

@@ -39,8 +39,6 @@ CHECKED = 0.1
 """Place of the sample that shows whether an input is a polynomial, from −1 to 1 in its interval."""
 ROUNDING = 1e-13
 """Difference, relative to the input's largest size, from which on an input is no polynomial."""
-LONGEST = 30.0
-"""Longest interval of a table [degree]: longer ones are divided evenly."""
 MOST_KNOTS, LONGEST_PIECE = 4, 30.0
 """Most knots of a piece, and its greatest length [degree]: with more knots an evaluation takes more operations, with
 more pieces there are more samples."""
@@ -154,7 +152,7 @@ def _knots(scene: Scene, tables: list[xr.DataArray]) -> Array:
     for table in tables:
         period = period_of(table, scene.mechanism.period)
         every.append(np.add.outer(np.arange(0.0, scene.period, period), np.mod(table["theta2"].values, period)).ravel())
-    return smooth.divided(np.concatenate(every), scene.period, LONGEST)
+    return smooth.divided(np.concatenate(every), scene.period)
 
 
 def _knots_of_functions(scene: Scene, tables: list[xr.DataArray]) -> Array | None:

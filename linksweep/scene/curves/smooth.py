@@ -68,7 +68,7 @@ def smooth_knots(
         Knots in order, the first again after a period [degree].
     """
     breaks = np.append(breaks, 0.0)  # where a function of so many turns may begin anew
-    knots = divided(np.concatenate([known, breaks]), period, LONGEST)
+    knots = divided(np.concatenate([known, breaks]), period)
     beside = np.add.outer(np.concatenate([-BESIDE_BREAKS, BESIDE_BREAKS]), breaks).ravel()
     dense = np.concatenate([np.arange(OFF_ROUND * STEP, period, STEP), beside, quick])
     dense = np.unique(knots[0] + np.mod(dense - knots[0], period))
@@ -91,11 +91,11 @@ def smooth_knots(
     return None
 
 
-def divided(angles: Array, period: float, longest: float) -> Array:
-    """Return different angles in order, the first again after a period, and even ones where they are farther apart."""
+def divided(angles: Array, period: float) -> Array:
+    """Return different angles in order, the first again after a period, and even ones in intervals beyond `LONGEST`."""
     knots = np.unique(np.mod(angles, period))
     knots = np.append(knots, knots[0] + period)
     parts = [
-        np.linspace(start, end, math.ceil((end - start) / longest), endpoint=False) for start, end in pairwise(knots)
+        np.linspace(start, end, math.ceil((end - start) / LONGEST), endpoint=False) for start, end in pairwise(knots)
     ]
     return np.append(np.concatenate(parts), knots[-1])

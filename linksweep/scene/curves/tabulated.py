@@ -7,13 +7,14 @@ such samples.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable
+from collections.abc import Hashable
 from functools import lru_cache
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
+from linksweep.scene.curves.interpolation import PeriodicCurve
 from linksweep.scene.curves.over_angle import period_of_function
 
 STEP = 0.5
@@ -26,8 +27,6 @@ MOST = 20_000
 """Samples of a turn that a file holds at most."""
 BETWEEN = np.arange(0.05, 1.0, 0.1)
 """Places between two samples where function and spline are compared, as fractions of their distance."""
-
-Function = Callable[[np.ndarray], np.ndarray]
 
 
 def values_at(function: Any, angles: np.ndarray) -> np.ndarray:
@@ -67,7 +66,8 @@ def _tabulated(function: Any, period: float, turn: float, first_values: bytes) -
     while len(angles) <= MOST * period / turn:
         values, steps = values_at(function, angles), np.diff(angles, append=period)
         between = angles[:, None] + steps[:, None] * BETWEEN
-        error = np.abs(_spline(angles, values, period)(between) - values_at(function, between)).max(axis=1)
+        spline = PeriodicCurve(angles, values, period)
+        error = np.abs(spline.slope(between, 0) - values_at(function, between)).max(axis=1)
         rough = error > ACCURACY * np.abs(values).max()
         if not rough.any():
             return xr.DataArray(values, {"theta2": angles}, "theta2")
@@ -78,9 +78,3 @@ def _tabulated(function: Any, period: float, turn: float, first_values: bytes) -
 
 
 _kept = lru_cache(maxsize=64)(_tabulated)
-
-
-def _spline(angles: np.ndarray, values: np.ndarray, period: float) -> Function:
-    from scipy.interpolate import CubicSpline
-
-    return CubicSpline(np.append(angles, period), np.append(values, values[0]), bc_type="periodic")

@@ -303,7 +303,7 @@ def test_limits_of_all_groups_are_looked_up_once():
     assert [len(group.designs) for group in parts] == [20, 20, 20, 15]
     assert limits_of.cache_info().hits == before + 1
     for group in parts:
-        for own, others in zip(group.limits, every.some(group.designs), strict=True):
+        for own, others in zip(group.limits, some_of(every, group.designs), strict=True):
             np.testing.assert_array_equal(own, others)
 
 

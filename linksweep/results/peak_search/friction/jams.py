@@ -13,6 +13,7 @@ import numpy as np
 from linksweep.base.degrees import OFF_ROUND
 from linksweep.engine.quantity import LAST_UNJAMMED
 from linksweep.engine.run import Field
+from linksweep.results.peak_search.arcs import arc_ends_of_whole_period
 from linksweep.results.peak_search.between import EVERYWHERE
 from linksweep.results.peak_search.groups import Group, all_at_once, different, empty_over_all, groups
 from linksweep.results.peak_search.paths import ASIDE, jump_angles
@@ -90,8 +91,6 @@ def jam_tables(scene: Scene) -> tuple[tuple[str, ...], Array, Array, Array]:
 def _jams(group: Group) -> Jams:
     """Return the jams of designs, each ended by the next change of place."""
     row, middle, place = _pieces(group)
-    if not len(row):
-        return Jams(row, middle, middle, place)
     period, following = group.scene.period, _next_of_row(row)
     changes = np.flatnonzero(place[following] != place)
     ahead = middle[following] + np.where(following <= np.arange(len(row)), period, 0.0)
@@ -111,9 +110,7 @@ def _pieces(group: Group) -> Pieces:
     """Return the pieces of a group's designs, without those as short as the noise of a jump."""
     period = group.scene.period
     even = np.broadcast_to(np.arange(0.5 * STEP, period, STEP), (len(group.designs), round(period / STEP)))
-    limits = group.limits
-    ends = [] if limits is None else [limits.arc_start, limits.arc_end]
-    ends = [end + start for end in ends for start in np.arange(0.0, period, group.scene.period_of_motion)]
+    ends = arc_ends_of_whole_period(group)
     cuts = in_order(np.mod(np.concatenate([even, jump_angles(group), *ends], axis=1), period))
     length = np.diff(cuts, axis=1, append=cuts[:, :1] + period)
     row, nth = np.nonzero(length > 4.0 * ASIDE)

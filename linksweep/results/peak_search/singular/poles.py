@@ -148,7 +148,8 @@ def _grows_as_a_power(size: Array) -> Array:
 
 def _singular_angles(findings: dict[str, Finding]) -> list[Array]:
     """Return the dead centres and jams among findings in closed form [degree], several on a trailing axis."""
-    return [findings[f"{KINDS[kind]}_angle"].values for kind in KINDS if f"{KINDS[kind]}_angle" in findings]
+    names = (f"{name}_angle" for name in KINDS.values())
+    return [findings[name].values for name in names if name in findings]
 
 
 def singular_angles(group: Group, signals: tuple[str, ...] = ()) -> Array:
