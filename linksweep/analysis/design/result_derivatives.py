@@ -89,8 +89,13 @@ class Derived(NamedTuple):
 
 
 def derived(scene: Scene, name: str, to: tuple[str, ...], conditions: Conditions = USUAL) -> Derived:
-    """Return a result by its name, with its derivatives to parameters."""
-    scene = with_sections(scene, name)
+    """Return a result by its name, with its derivatives to parameters; none that is NaN has the status ok."""
+    result = _derived(with_sections(scene, name), name, to, conditions)
+    lost = reduce(operator.or_, map(np.isnan, result.slopes.values()), xr.DataArray(False))
+    return result._replace(status=xr.where((result.status == OK) & lost, JUMP, result.status))
+
+
+def _derived(scene: Scene, name: str, to: tuple[str, ...], conditions: Conditions) -> Derived:
     if name in OUTPUT or name.endswith(TRAVEL):
         return _travel(scene, name, to)
     if name.endswith(TIME_RATIO):
@@ -305,7 +310,8 @@ def _mean(scene: Scene, stem: str, end: str, to: tuple[str, ...]) -> Derived:
         slopes = {path: slope / (2.0 * value) for path, slope in slopes.items()}
     jammed = jams(scene)  # a mean is that of the other angles, and the ends of a jam move
     unknown = moving_unknown(scene, to) | jammed.any([dim for dim in jammed.dims if dim not in value.dims])
-    return Derived(value, slopes, xr.where(np.isfinite(value), xr.where(unknown, JUMP, OK), NONE))
+    status = xr.where(np.isfinite(value), xr.where(unknown, JUMP, OK), NONE)
+    return Derived(value, slopes, with_zeros(scene, value, slopes, status) if end == "rms" else status)
 
 
 def _flywheel(scene: Scene, to: tuple[str, ...], fluctuation: float) -> Derived:

@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 ALLOWED = 1e-6
 """Excess over a constraint that is allowed, relative to its bound."""
+UNKNOWN = "a derivative is not known where the search ended: ls.sensitivities of the scene there states why"
+"""Message of such a search."""
 OPTIONS: dict[str, dict[str, Any]] = {
     "SLSQP": {"maxiter": 200, "ftol": 1e-9},
     "trust-constr": {"maxiter": 300, "initial_tr_radius": 0.3},
@@ -78,12 +80,13 @@ def _from_start(
             constraints=searched.constraints(), method=method, options=OPTIONS[method],
         )  # fmt: skip
     x = searched.own(answer.x)
+    known = bool(minimax) or np.isfinite(objective.gradient(x)).all()  # as 0 a search takes what is not known
     return OptimizeResult(
         x=x,
         fun=objective.plain_value(x),
         allowed=problem.allowed(x, ALLOWED),
-        success=bool(answer.success),
-        message=str(answer.message),
+        success=bool(answer.success) and known,
+        message=str(answer.message) if known else UNKNOWN,
         nit=int(answer.nit),
         calls=calls,
         method=method,

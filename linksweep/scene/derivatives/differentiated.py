@@ -28,7 +28,7 @@ from linksweep.mechanisms import Mechanism
 from linksweep.mechanisms.strokes import Stroke
 from linksweep.scene.curves.derivatives import with_derivatives as curve_with_derivatives
 from linksweep.scene.curves.over_position import POSITION
-from linksweep.scene.derivatives.sloped import Sloped, slopes_of, value_of
+from linksweep.scene.derivatives.sloped import Sloped, slopes_of, value_of, where
 from linksweep.scene.dimensions import aligned
 from linksweep.scene.inputs import Inputs, as_field, form_of
 from linksweep.scene.pairs import quantities_at
@@ -109,14 +109,15 @@ class Differentiated(Scene):
     @cached_property
     def moving_jumps(self) -> tuple[Any, ...]:
         """Crank angles [degree] at which forces jump: with slopes where a parameter moves them by a closed form, arrays
-        where a search has located them, plain floats where no parameter moves them."""
+        where a search has located them, plain floats where no parameter moves them. NaN, which does not move, in
+        designs that have none."""
         sloped = _with_slopes(self)
         mechanism = sloped.mechanism
         angles = [*mechanism.jumps(), *mechanism.seams(self.profile)]
         for load in sloped.loads:
             angles += [*load.jumps(mechanism), *load.jumps_along(partial(_stroke, mechanism, self.plain))]
         different: dict[bytes, Any] = {np.asarray(value_of(angle)).tobytes(): angle for angle in angles}
-        return tuple(different.values())
+        return tuple(map(_reached, different.values()))
 
     def at(self, grid: Grid, places: Places | None = None) -> Scene:
         """Evaluate all that changes over the revolution at the angles of a grid, each for its own design, if stated."""
@@ -152,6 +153,11 @@ def number_problem(scene: Scene, path: str) -> str:
 
 def _single(value: Any) -> bool:
     return value is None or isinstance(value, float)
+
+
+def _reached(angle: Any) -> Any:
+    """Return a crank angle without slopes where it is NaN."""
+    return where(np.isnan(angle), np.nan, angle) if isinstance(angle, Sloped) else angle
 
 
 def _stroke(mechanism: Mechanism, plain: Scene, name: str) -> Stroke:
