@@ -29,6 +29,14 @@ def quantities_at(scene: Scene, names: tuple[str, ...], designs: Array, angles: 
     return Pairs(scene, designs, angles, loaded=changes(scene, names)).values(names)
 
 
+def changing_inputs_at(scene: Scene, designs: Array, angles: Array) -> dict[str, Array]:
+    """Return the inputs that change over the angle, by name, at pairs of a design and an angle [degree]."""
+    inputs, grid, sample = _inputs_at(scene, designs, angles, True)
+    places = places_of(scene.at_one_angle.inputs.sizes, designs) | {grid.dim: sample}
+    fields = {name: field for name, field in inputs.fields.items() if grid.dim in field.dims}
+    return {name: field.values.ravel()[flat_index(field, places, len(angles))] for name, field in fields.items()}
+
+
 def changes(scene: Scene, names: tuple[str, ...]) -> bool:
     """Return whether any of these quantities depends on an input that changes over the angle."""
     if scene.steady:

@@ -31,7 +31,7 @@ from linksweep.base.degrees import signed_distance
 from linksweep.base.validate import name_problems
 from linksweep.engine.run import Field
 from linksweep.results.compute import quantity_problems
-from linksweep.results.derivatives.of_integrals import moving_unknown
+from linksweep.results.derivatives.jumps import moving_unknown, parted_jumps
 from linksweep.results.derivatives.of_means import mean_derivatives
 from linksweep.results.derivatives.of_peaks import (
     ARC_END,
@@ -71,7 +71,7 @@ class Derived(NamedTuple):
     """A result with its derivatives by parameter, and the status of these, each over the design dims.
 
     Derivatives of a peak whose status is not ok are those of one rise, or of one side of a jump: enough for a search.
-    `corners` states to which parameters those of two equal rises differ.
+    `corners` states to which parameters those of two equal rises, or of two jumps at one angle, differ.
     """
 
     value: xr.DataArray
@@ -308,17 +308,15 @@ def _mean(scene: Scene, stem: str, end: str, to: tuple[str, ...]) -> Derived:
     slopes = mean_derivatives(scene, str(of), power, to)
     if end == "rms":
         slopes = {path: slope / (2.0 * value) for path, slope in slopes.items()}
-    jammed = jams(scene)  # a mean is that of the other angles, and the ends of a jam move
-    unknown = moving_unknown(scene, to) | jammed.any([dim for dim in jammed.dims if dim not in value.dims])
-    status = xr.where(np.isfinite(value), xr.where(unknown, JUMP, OK), NONE)
-    return Derived(value, slopes, with_zeros(scene, value, slopes, status) if end == "rms" else status)
+    status = xr.where(np.isfinite(value), xr.where(_some(jams(scene), value), JUMP, OK), NONE)  # ends of a jam move
+    status = with_zeros(scene, value, slopes, status) if end == "rms" else status
+    return _with_jumps(scene, to, Derived(value, slopes, status))
 
 
 def _flywheel(scene: Scene, to: tuple[str, ...], fluctuation: float) -> Derived:
     """Return the flywheel for a coefficient of fluctuation."""
     value, slopes = flywheel_slopes(scene, to, fluctuation=fluctuation)
-    unknown = JUMP if moving_unknown(scene, to) else OK
-    return Derived(value, slopes, xr.where(np.isfinite(value), unknown, NONE))
+    return _with_jumps(scene, to, Derived(value, slopes, xr.where(np.isfinite(value), OK, NONE)))
 
 
 def _life(scene: Scene, name: str, to: tuple[str, ...], conditions: Conditions) -> Derived:
@@ -329,5 +327,17 @@ def _life(scene: Scene, name: str, to: tuple[str, ...], conditions: Conditions) 
     value = results[word].assign_attrs(units=units, long_name=f"{text}, pin {pin}")
     status = STATUS_OF_LIFE[results["life_status"].astype(int)]
     status = xr.DataArray(status, dims=results["life_status"].dims)
-    unknown = (status == OK) & moving_unknown(scene, to)
-    return Derived(value, slopes, xr.where(unknown, JUMP, status))
+    return _with_jumps(scene, to, Derived(value, slopes, status))
+
+
+def _with_jumps(scene: Scene, to: tuple[str, ...], result: Derived) -> Derived:
+    """Return a result of integrals with the status of jumps that move in a way that is not known, or that part."""
+    corners = {path: _some(parted, result.value) for path, parted in parted_jumps(scene, to).items()}
+    apart = reduce(operator.or_, corners.values(), xr.DataArray(False))
+    of_jumps = JUMP if moving_unknown(scene, to) else xr.where(apart, TIE, OK)
+    return result._replace(status=xr.where(result.status == OK, of_jumps, result.status), corners=corners)
+
+
+def _some(there: xr.DataArray, value: xr.DataArray) -> xr.DataArray:
+    """Return what is there of a design over the dims of a result: in any of the designs that share it."""
+    return there.any([dim for dim in there.dims if dim not in value.dims])

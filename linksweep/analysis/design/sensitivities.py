@@ -72,11 +72,12 @@ def sensitivities(
         Over the design dims, and the dim `section` of what is inside links, for each result such as F32_peak: its
         value, and over the dim `parameter` `F32_peak_derivative`, per unit of the parameter as `parameter_unit` states
         it, and `F32_peak_elasticity` [1], the percent by which the result grows for one percent of the parameter.
-        `F32_peak_status` states whether a peak has derivatives: "ok"; "tie", of two equal rises of which some
-        derivatives differ; "moving_jump", at a jump or a kink whose way is not known; "unbounded", at infinity;
-        "arc_end", at an end of the motion, or under a load over a distance that counts from there; "no_peak";
-        "zero_magnitude", of a force that is 0, but for rounding. Where it is not ok they are NaN, in a tie those that
-        differ. With angles there is the `status` of a sweep, and of a magnitude such as F32 its `F32_status`.
+        `F32_peak_status` states whether a peak has derivatives: "ok"; "tie", of two equal rises, or of two forces that
+        jump at one angle, of which some derivatives differ; "moving_jump", at a jump or a kink whose way is not known;
+        "unbounded", at infinity; "arc_end", at an end of the motion, or under a load over a distance that counts from
+        there; "no_peak"; "zero_magnitude", of a force that is 0, but for rounding. Where it is not ok they are NaN, in
+        a tie those that differ. With angles there is the `status` of a sweep, and of a magnitude such as F32 its
+        `F32_status`.
 
     Raises
     ------

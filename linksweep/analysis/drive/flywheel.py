@@ -33,12 +33,13 @@ from linksweep.engine.trace.derivatives import derivative_of
 from linksweep.results.compute import require
 from linksweep.results.cylinders.multi_cylinder import MultiCylinder, one_cylinder
 from linksweep.results.dataset import with_units
-from linksweep.results.derivatives.of_integrals import known_jumps
+from linksweep.results.derivatives.jumps import known_jumps
+from linksweep.results.derivatives.samples import pairs_over
+from linksweep.results.derivatives.sides import BESIDE
 from linksweep.results.peak_search.between import EVERYWHERE
 from linksweep.results.peak_search.groups import assembled_groups, different, empty, empty_over_all
 from linksweep.results.sweep import sweep
 from linksweep.scene.derivatives.differentiated import Differentiated, differentiated
-from linksweep.scene.derivatives.sloped import slopes_of, value_of
 from linksweep.scene.dimensions import argument_problems
 from linksweep.scene.pairs import Array
 from linksweep.scene.scene import Scene
@@ -57,8 +58,6 @@ TEXTS = {
     "drive_torque": ("N m", "constant torque of the drive on the crank, positive counter-clockwise"),
     "energy_fluctuation": ("J", ENERGY),
 }
-BESIDE = 1e-7
-"""Distance from a jump [degree] at which its two sides are taken."""
 JUMPING = ("reduced_torque", "reduced_inertia_slope")
 OF_TORQUE = ("drive_torque", "energy_fluctuation")
 """Results that do not depend on the flywheel."""
@@ -291,13 +290,17 @@ def _slopes(group: Any, own: Differentiated, names: tuple[str, ...], s: float) -
 
 
 def _moving_jumps(group: Any, own: Differentiated) -> list[MovingJump]:
-    """Return the jumps of the torque that parameters move, in every turn of the cycle."""
-    rows, jumps = np.arange(len(group.designs)), []
-    for jump in known_jumps(own):
-        moves = {path: np.radians(group.number(slope)) for path, slope in slopes_of(jump).items()}
-        first = np.nan_to_num(group.number(value_of(jump)))  # of designs without it, where nothing moves it
-        for turn in np.arange(0.0, own.period, own.mechanism.period):
-            angle = first + turn
-            before, after = (group.values(JUMPING, rows, angle + side) for side in (-BESIDE, BESIDE))
-            jumps.append(MovingJump(angle, before[0], after[0], before[1], moves))
+    """Return the jumps of the torque that parameters move."""
+    pairs = pairs_over(own, tuple(own.at_one_angle.inputs.sizes))
+    known, rows, jumps = known_jumps(pairs), np.arange(len(group.designs)), []
+
+    def numbers(row: Array) -> Array:
+        return group.number(xr.Variable(*pairs.field(row)))
+
+    for angles, moved in zip(known.angles, known.moves, strict=True):
+        there = np.isfinite(numbers(angles))
+        angle = np.nan_to_num(numbers(angles))  # of designs without it, where nothing moves it
+        moves = {path: np.radians(np.where(there, numbers(row), 0.0)) for path, row in zip(own.to, moved, strict=True)}
+        before, after = (group.values(JUMPING, rows, angle + side) for side in (-BESIDE, BESIDE))
+        jumps.append(MovingJump(angle, before[0], after[0], before[1], moves))
     return jumps

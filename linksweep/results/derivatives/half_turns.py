@@ -11,7 +11,7 @@ import xarray as xr
 
 from linksweep.results.derivatives.of_zeros import zero_angles
 from linksweep.results.derivatives.samples import pairs_over
-from linksweep.scene.derivatives.differentiated import ANGLE, Differentiated, differentiated
+from linksweep.scene.derivatives.differentiated import ANGLE, Differentiated, Jump, differentiated
 from linksweep.scene.derivatives.sloped import Sloped
 from linksweep.scene.loads.torsion import TorsionSpring
 from linksweep.scene.pairs import Array, by_row
@@ -20,13 +20,13 @@ STEP = 0.5
 """Distance of the samples [degree]."""
 
 
-def half_turns(scene: Differentiated) -> list[Sloped]:
+def half_turns(scene: Differentiated) -> list[Jump]:
     """Return the crank angles [degree] at which springs without a closed form pass 180 degrees of twist, in the first
     turn; NaN for designs that have fewer."""
-    jumps: list[Sloped] = []
+    jumps: list[Jump] = []
     for k, load in enumerate(scene.loads, 1):
         if isinstance(load, TorsionSpring) and not load.jumps(scene.mechanism):
-            jumps += _half_turns_of(scene, f"load{k}_twist")
+            jumps += [Jump(k, angle) for angle in _half_turns_of(scene, f"load{k}_twist")]
     return jumps
 
 

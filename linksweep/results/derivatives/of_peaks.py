@@ -12,7 +12,8 @@ closed form, as a dead centre, the derivative is one-sided:
     d(max q)/dp = ∂q/∂p + ∂q/∂θ·dθ*/dp
 
 It is not known at other jumps that move, and there is none at the end of an arc, a toggle, where slopes are infinite,
-nor of two equal rises that change differently. A status says which.
+nor of two equal rises that change differently, nor at two jumps, or bends, at one angle that a parameter parts. A
+status says which.
 
 Two rises are equal where they differ by less than the search may err. Those as high as the peak are found by the search
 itself (`linksweep.results.peak_search.rises`).
@@ -30,6 +31,7 @@ from linksweep.engine.quantity import opposite_of
 from linksweep.engine.run import Field
 from linksweep.engine.trace.derivatives import derivative_of
 from linksweep.results.derivatives.samples import Pairs, pairs_over
+from linksweep.results.derivatives.sides import bends, unlisted
 from linksweep.results.peak_search.along_paths import on_own_side
 from linksweep.results.peak_search.paths import ASIDE
 from linksweep.results.peak_search.rises import at_arc_ends, equal_rises
@@ -75,6 +77,15 @@ class PeakDerivatives(NamedTuple):
     status: Array
 
 
+class RiseDerivatives(NamedTuple):
+    """Derivatives of extremes (parameter, design), which of them differ between jumps at one angle, and whether those
+    of a design are known; where they are not, as at an angle that stays, they are those at the angle itself."""
+
+    slopes: Array
+    corners: Array
+    known: Array
+
+
 def peak_derivatives(
     scene: Scene, name: str, angle: Field, value: Field, to: tuple[str, ...], largest: bool = True
 ) -> PeakDerivatives:
@@ -92,10 +103,9 @@ def peak_derivatives(
     own = differentiated(scene, (name,), (*to, ANGLE))
     pairs = pairs_over(own, angle.dims)
     at, peak = pairs.numbers(angle), pairs.numbers(value)
-    slopes, known = rise_derivatives(pairs, name, to, at, peak)
-    status = np.where(known, OK, JUMP)
-    corners = _corners(pairs, name, to, at, peak, largest, slopes) | _across_seams(pairs, name, to, at, peak, slopes)
-    status = np.where(corners.any(axis=0), TIE, status)
+    slopes, corners, known = rise_derivatives(pairs, name, to, at, peak)
+    corners |= _corners(pairs, name, to, at, peak, largest, slopes) | _across_seams(pairs, name, to, at, peak, slopes)
+    status = np.where(known, np.where(corners.any(axis=0), TIE, OK), JUMP)
     at_ends = at_arc_ends(own.plain, pairs.designs, at, 10.0 * BESIDE)
     status = np.where(at_ends | np.isnan(slopes).any(axis=0), ARC_END, status)  # or a load's position counts from there
     status = np.where(np.isinf(peak), UNBOUNDED, status)
@@ -103,13 +113,10 @@ def peak_derivatives(
     return PeakDerivatives(pairs, slopes, corners, status)
 
 
-def rise_derivatives(
-    pairs: Pairs, name: str, to: tuple[str, ...], angles: Array, heights: Array
-) -> tuple[Array, Array]:
-    """Return the derivatives (parameter, design) of a quantity's extremes at these angles [degree], and whether each is
-    known; where it is not, as at an angle that stays, they are those at the angle itself."""
+def rise_derivatives(pairs: Pairs, name: str, to: tuple[str, ...], angles: Array, heights: Array) -> RiseDerivatives:
+    """Return the derivatives of a quantity's extremes at these angles [degree]."""
     polished, smooth = _polished(pairs, name, angles)
-    held, jumps, moves = _at_jumps(pairs, angles, to)
+    held, jumps, *moves = _at_jumps(pairs, angles, to)
     (polished_heights,) = pairs.at((name,), polished)
     smooth &= ~jumps & (np.abs(polished_heights - heights) <= SAME * np.abs(heights))  # not in the middle of a jump
     sides = on_own_side(
@@ -119,7 +126,8 @@ def rise_derivatives(
     values = pairs.at(tuple(derivative_of(name, path) for path in (*to, ANGLE)), place)
     slopes, steep = values[:-1], values[-1]
     with np.errstate(invalid="ignore"):
-        return np.where(smooth, slopes, slopes + steep * moves), smooth | held
+        least, most = (np.where(smooth, slopes, slopes + steep * way) for way in moves)
+    return RiseDerivatives(most, _unlike(pairs, to, least, most, heights), smooth | held)
 
 
 def turning_point_derivatives(scene: Scene, name: str, angle: Field, to: tuple[str, ...]) -> tuple[Pairs, Array, Array]:
@@ -149,23 +157,36 @@ def _polished(pairs: Pairs, name: str, angles: Array) -> tuple[Array, Array]:
     return np.where(smooth & ~flat, at, angles), smooth
 
 
-def _at_jumps(pairs: Pairs, angles: Array, to: tuple[str, ...]) -> tuple[Array, Array, Array]:
-    """Return whether each angle is one at which a force jumps or bends, whether that is a jump, and how far (parameter,
-    design) a parameter moves it [rad]."""
+def _at_jumps(pairs: Pairs, angles: Array, to: tuple[str, ...]) -> tuple[Array, Array, Array, Array]:
+    """Return whether each angle is one at which a force jumps or bends, and none in a way that is not known; whether a
+    force jumps there; and how far, least and most, parameters move those at it (parameter, design) [rad]."""
     scene = pairs.scene
-    held, jumps = np.zeros((2, len(angles)), dtype=bool)
-    moves = np.zeros((len(to), len(angles)))
+    held, jumps, searched = np.zeros((3, len(angles)), dtype=bool)
+    least, most = np.full((2, len(to), len(angles)), np.nan)
     for angle in scene.quick.angles:
         held |= _near(angles, angle, scene.period)
     for jump in scene.moving_jumps:
-        if not isinstance(jump, Sloped | float):
-            continue
         turn = scene.mechanism.period
-        here = _near(angles, np.mod(_over(pairs, value_of(jump)), turn), turn)
+        here = _near(angles, np.mod(_over(pairs, value_of(jump.angle)), turn), turn)
+        if not isinstance(jump.angle, Sloped | float):
+            searched |= here
+            continue
         jumps |= here
-        for row, path in zip(moves, to, strict=True):
-            row[here] = np.radians(_over(pairs, slopes_of(jump).get(path, 0.0)))[here]
-    return held | jumps, jumps, moves
+        for k, path in enumerate(to):
+            way = np.where(here, np.radians(_over(pairs, slopes_of(jump.angle).get(path, 0.0))), np.nan)
+            least[k], most[k] = np.fmin(least[k], way), np.fmax(most[k], way)
+    stays = bends(pairs, unlisted(scene), np.where(jumps, angles, np.nan))
+    least, most = (np.where(stays, end(way, 0.0), way) for end, way in ((np.minimum, least), (np.maximum, most)))
+    searched |= _at_reversals(pairs, angles)
+    return (held | jumps) & ~searched, jumps, np.nan_to_num(least), np.nan_to_num(most)
+
+
+def _at_reversals(pairs: Pairs, angles: Array) -> Array:
+    """Return whether a slide that rubs turns round at each angle, where no closed form tells of that."""
+    limits = pairs.scene.table.limits or () if pairs.scene.mechanism.rubs else ()
+    signals = tuple(signal for limit in limits if limit.zeros == "jump" for signal in limit.signals)
+    before, after = (pairs.at(signals, angles + side) for side in (-10.0 * BESIDE, 10.0 * BESIDE))
+    return (before * after < 0.0).any(axis=0)
 
 
 def _over(pairs: Pairs, number: Any) -> Array:
@@ -190,6 +211,12 @@ def unlike(one: Any, other: Any, peak: Any, size: Any) -> Any:
     return abs(one - other) > ALIKE * np.maximum(abs(one), abs(other)) + ROUNDING * abs(peak) / size
 
 
+def _unlike(pairs: Pairs, to: tuple[str, ...], one: Array, other: Array, peak: Array) -> Array:
+    """Return whether derivatives (parameter, design) of two equal rises of each design differ."""
+    sizes = [_over(pairs, size_of(*pairs.scene.numbers[path])) for path in to]
+    return unlike(one, other, peak, np.reshape(sizes, one.shape))
+
+
 def _corners(
     pairs: Pairs, name: str, to: tuple[str, ...], angles: Array, peak: Array, largest: bool, slopes: Array
 ) -> Array:
@@ -204,10 +231,11 @@ def _corners(
     row, angle, top = row[other], angle[other], top[other]
     corners = np.zeros(slopes.shape, dtype=bool)
     if len(row):
-        rivals, known = rise_derivatives(pairs.some(row), name, to, angle, top if largest else -top)
-        for k, path in enumerate(to):
-            apart = unlike(rivals[k], slopes[k, row], peak[row], _over(pairs, size_of(*pairs.scene.numbers[path]))[row])
-            corners[k, row[apart | ~known]] = True
+        some = pairs.some(row)
+        rivals, own, known = rise_derivatives(some, name, to, angle, top if largest else -top)
+        apart = own | ~known | _unlike(some, to, rivals, slopes[:, row], peak[row])
+        for corner, each in zip(corners, apart, strict=True):
+            corner[row[each]] = True
     return corners
 
 
@@ -220,6 +248,5 @@ def _across_seams(pairs: Pairs, name: str, to: tuple[str, ...], angles: Array, p
             place = np.where(_near(angles, seam, scene.period), np.mod(seam + side, scene.period), np.nan)
             height, *others = pairs.at((name, *(derivative_of(name, path) for path in to)), place)
             equal = np.abs(height - peak) <= EQUAL * np.abs(peak)
-            for corner, path, own, other in zip(corners, to, slopes, others, strict=True):
-                corner |= equal & unlike(other, own, peak, _over(pairs, size_of(*scene.numbers[path])))
+            corners |= equal & _unlike(pairs, to, np.reshape(others, slopes.shape), slopes, peak)
     return corners

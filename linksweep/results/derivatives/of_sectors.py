@@ -43,6 +43,6 @@ def sector_derivatives(
     for sign, height, angle, slope in zip(signs, values, angles, slopes, strict=True):
         design, sector = np.nonzero(np.isfinite(height))
         at = design, sector
-        of_rises, _ = rise_derivatives(every.some(design), name, to, angle[at], sign * height[at])
+        of_rises, *_ = rise_derivatives(every.some(design), name, to, angle[at], sign * height[at])
         slope[at] = sign * of_rises.T
     return values.ravel(), np.nan_to_num(slopes.reshape(-1, len(to)))

@@ -31,6 +31,7 @@ from linksweep.scene.curves.over_position import POSITION
 from linksweep.scene.derivatives.sloped import Sloped, slopes_of, value_of, where
 from linksweep.scene.dimensions import aligned
 from linksweep.scene.inputs import Inputs, as_field, form_of
+from linksweep.scene.loads.action import Action
 from linksweep.scene.pairs import quantities_at
 from linksweep.scene.parameters import free, replaced
 from linksweep.scene.revolution import LENGTH, OMEGA2, Revolution
@@ -57,6 +58,17 @@ class Slope(NamedTuple):
     @property
     def name(self) -> str:
         return derivative_of(self.source, self.parameter)
+
+
+class Jump(NamedTuple):
+    """A crank angle [degree] at which a load jumps or bends, with the load's number; 0 is that of the machine itself.
+
+    It has slopes where a parameter moves it by a closed form, and is an array where a search has located it, a plain
+    float where no parameter moves it; NaN, which does not move, in designs that have none.
+    """
+
+    load: int
+    angle: Any
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -107,17 +119,21 @@ class Differentiated(Scene):
         return self.plain.unloaded
 
     @cached_property
-    def moving_jumps(self) -> tuple[Any, ...]:
-        """Crank angles [degree] at which forces jump: with slopes where a parameter moves them by a closed form, arrays
-        where a search has located them, plain floats where no parameter moves them. NaN, which does not move, in
-        designs that have none."""
+    def moving_jumps(self) -> tuple[Jump, ...]:
+        """Crank angles at which forces jump, or bend."""
         sloped = _with_slopes(self)
         mechanism = sloped.mechanism
-        angles = [*mechanism.jumps(), *mechanism.seams(self.profile)]
-        for load in sloped.loads:
-            angles += [*load.jumps(mechanism), *load.jumps_along(partial(_stroke, mechanism, self.plain))]
-        different: dict[bytes, Any] = {np.asarray(value_of(angle)).tobytes(): angle for angle in angles}
-        return tuple(map(_reached, different.values()))
+        jumps = [Jump(0, angle) for angle in (*mechanism.jumps(), *mechanism.seams(self.profile))]
+        for k, load in enumerate(sloped.loads, 1):
+            along = load.jumps_along(partial(_stroke, mechanism, self.plain))
+            jumps += [Jump(k, angle) for angle in (*_jumps_of(load, mechanism), *along)]
+        return tuple(jump._replace(angle=_reached(jump.angle)) for jump in jumps)
+
+    @property
+    def changing_inputs(self) -> tuple[str, ...]:
+        """Names of the inputs that change over the angle."""
+        fields = self.plain.at_one_angle.inputs.fields
+        return tuple(name for name, field in fields.items() if self.mechanism.index in field.dims)
 
     def at(self, grid: Grid, places: Places | None = None) -> Scene:
         """Evaluate all that changes over the revolution at the angles of a grid, each for its own design, if stated."""
@@ -153,6 +169,13 @@ def number_problem(scene: Scene, path: str) -> str:
 
 def _single(value: Any) -> bool:
     return value is None or isinstance(value, float)
+
+
+def _jumps_of(load: Action, mechanism: Mechanism) -> list[Any]:
+    """Return the crank angles [degree] at which a load over them jumps: at its breaks none of numbers alone does."""
+    numbers = getattr(load, "changing", ())
+    still = numbers and all(isinstance(number, Sloped | float | None) for number in numbers)
+    return [angle for angle in load.jumps(mechanism) if not (still and isinstance(angle, float))]
 
 
 def _reached(angle: Any) -> Any:

@@ -1,5 +1,7 @@
 """Derivatives of results where forces jump at angles that parameters move, by differences of computed results."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -16,10 +18,21 @@ OUT_OF_REACH = ls.Scene(PISTON, omega2=10.0, loads=[FOLLOWING])
 """The slider goes from 0.15 to 0.25 m, and does not reach the first position of the table."""
 
 
+ANGLES = np.arange(0.0, 360.0, 60.0)
+TABLE = xr.DataArray([0.0, -50.0, -90.0, -120.0, -90.0, -50.0], {"theta2": ANGLES}, "theta2")
+RUBBING = ls.Scene(replace(PISTON, offset=0.0, friction=0.15), 10.0, gravity=(0, -9.81))
+PRESS = ls.example("press")
+
+
+def spring(free_angle=0.0, rate=5.0):
+    """Return a spring whose torque jumps where the crank is at 180 degrees more."""
+    return ls.TorsionSpring("ground", "crank", rate=rate, free_angle=free_angle)
+
+
 def result(scene, name):
     if name == "flywheel_inertia":
         return ls.flywheel(scene, fluctuation=0.02)[name]
-    return ls.peaks(scene, of=[name])[name]
+    return ls.peaks(scene, of=[name.removesuffix("_peak").removesuffix("_min")])[name]
 
 
 def differences(scene, name, path, step):
@@ -59,3 +72,89 @@ def test_what_is_zero_has_no_derivative_and_a_search_there_no_success():
         assert MEANINGS[int(ds[f"{name}_status"])] == "zero_magnitude"
     most = ls.objective(scene, {"ground": (0.19, 0.21)}, maximize="T12_rms").optimum()
     assert not most.success and "not known" in most.message
+
+
+# ------------------------------------------------------------------------------------------- several at one angle
+
+
+def test_a_table_that_bends_at_a_dead_centre_does_not_hold_it():
+    """Friction jumps at 0 and 180 degrees, where the table has nodes; the offset moves both dead centres."""
+    scene = replace(RUBBING, loads=[ls.Load("slider", force=TABLE, interpolation="linear")])
+    has_those_of_differences(scene, ["F12_rms", "F32x_rms"], {"offset": 1e-5}, rel=1e-4)
+
+
+@pytest.mark.parametrize("jumps", [(), (180.0,), (0.0, 180.0)])
+def test_a_break_at_which_nothing_breaks_does_not_hold_a_spring(jumps):
+    scene = replace(PRESS, loads=[spring(), ls.Load("coupler", force=(0.0, -80.0), breaks=jumps)])
+    has_those_of_differences(scene, ["T12_rms", "T12_min", "flywheel_inertia"], {"loads[1].free_angle": 0.05}, rel=1e-4)
+
+
+def test_loads_that_jump_and_move_alike_are_one_jump():
+    """A load that acts on one way alone jumps at dead centres, with friction."""
+    one_way = ls.Load("slider", force=-100.0, over="slider.position", while_="closing")
+    for offset in (0.01, 0.0):
+        scene = replace(RUBBING, mechanism=replace(RUBBING.mechanism, offset=offset), loads=[one_way])
+        has_those_of_differences(scene, ["F12_rms"], {"offset": 1e-5}, rel=1e-4)
+
+
+PARTED = {
+    "two springs": (replace(PRESS, loads=[spring(20.0), spring(20.0, 3.0)]), "loads[1].free_angle", 0.2),
+    "a spring and a table of steps": (
+        replace(PRESS, loads=[spring(), ls.Load("crank", torque=0.1 * TABLE, interpolation="step")]),
+        "loads[1].free_angle",
+        0.2,
+    ),
+    "a spring and a function": (
+        replace(PRESS, loads=[spring(), ls.Load("crank", torque=lambda angle: np.where(angle % 360 < 180, 4.0, -3.0))]),
+        "loads[1].free_angle",
+        0.2,
+    ),
+    "a spring a turn later than a table of steps": (
+        replace(PRESS, loads=[spring(180.0), ls.Load("crank", torque=0.1 * TABLE, interpolation="step")]),
+        "loads[1].free_angle",
+        0.2,
+    ),
+}
+
+
+@pytest.mark.parametrize("case", PARTED)
+def test_jumps_that_a_parameter_parts_have_a_corner(case):
+    """Whichever comes first decides what acts between them: the square of the torque changes by another amount."""
+    scene, path, step = PARTED[case]
+    forward, backward = differences(scene, "T12_rms", path, step)
+    assert abs(forward - backward) > 1e-3 * abs(forward)
+    ds = ls.sensitivities(scene, of=["T12_rms", "flywheel_inertia"], to=[path, "omega2"])
+    for name in ("T12_rms", "flywheel_inertia"):
+        assert MEANINGS[int(ds[f"{name}_status"])] == "tie"
+        assert np.isnan(ds[f"{name}_derivative"].values).tolist() == [True, False]
+
+
+def hat(angle):
+    """Return a force that has its largest size, 1000 N, at 180 degrees, where it bends."""
+    return -1000.0 + 5.0 * abs(angle % 360.0 - 180.0)
+
+
+PEAKS = {
+    "slider-crank": RUBBING,
+    "linkage": replace(
+        RUBBING,
+        mechanism=ls.Linkage(
+            "crank A-B, rod B-C, ram C on slide", ground={"A": (0, 0)}, guides={"slide": ls.Guide(friction=0.15)},
+            crank=BARS[0], rod=BARS[1], ram=ls.Slider(mass=4.0),
+        ),
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("machine", "jumps"), [("slider-crank", ()), ("slider-crank", (180.0,)), ("linkage", (180.0,))]
+)
+def test_a_peak_at_a_dead_centre_where_a_load_bends_has_a_corner(machine, jumps):
+    """The offset takes the dead centre away from where the load is largest."""
+    link, path = ("slider", "offset") if machine == "slider-crank" else ("ram", "guides.slide.through[2]")
+    scene = replace(PEAKS[machine], loads=[ls.Load(link, force=(hat, 0.0), breaks=jumps)])
+    forward, backward = differences(scene, "F12_peak", path, 1e-6)
+    assert abs(forward - backward) > 0.5 * abs(forward)
+    ds = ls.sensitivities(scene, of=["F12_peak"], to=[path])
+    assert np.isnan(float(ds.F12_peak_derivative[0]))
+    assert MEANINGS[int(ds.F12_peak_status)] == ("tie" if machine == "slider-crank" else "moving_jump")
