@@ -21,8 +21,8 @@ STEP = 0.5
 
 
 def half_turns(scene: Differentiated) -> list[Jump]:
-    """Return the crank angles [degree] at which springs without a closed form pass 180 degrees of twist, in the first
-    turn; NaN for designs that have fewer."""
+    """Return the crank angles [degree] at which springs without a closed form pass 180 degrees of twist, over
+    the whole cycle; NaN for designs that have fewer."""
     jumps: list[Jump] = []
     for k, load in enumerate(scene.loads, 1):
         if isinstance(load, TorsionSpring) and not load.jumps(scene.mechanism):
@@ -34,7 +34,7 @@ def _half_turns_of(scene: Differentiated, twist: str) -> list[Sloped]:
     """Return the crank angles at which one twist passes 180 degrees."""
     own = differentiated(scene.plain, (twist,), (*scene.to, ANGLE))
     pairs = pairs_over(own, tuple(own.at_one_angle.inputs.sizes))
-    count, angles = len(pairs.designs), np.arange(0.0, scene.mechanism.period + STEP, STEP)
+    count, angles = len(pairs.designs), np.arange(0.0, scene.period + STEP, STEP)
     (values,) = pairs.some(np.repeat(np.arange(count), len(angles))).at((twist,), np.tile(angles, count))
     values = values.reshape(count, len(angles))
     design, k = np.nonzero(np.abs(np.diff(values)) > 180.0)

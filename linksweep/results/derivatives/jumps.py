@@ -76,11 +76,11 @@ def _sources(pairs: Pairs) -> Iterator[tuple[int, Array, Array]]:
     """Yield the jumps over the whole cycle: the number of the load, angles of designs, and how far they are moved."""
     scene, turn = pairs.scene, pairs.scene.mechanism.period
     closed = [jump for jump in scene.moving_jumps if isinstance(jump.angle, Sloped | float)]
-    for load, angle in [*closed, *half_turns(scene)]:
+    each_turn = [(*jump, k * turn) for jump in closed for k in range(round(scene.period / turn))]
+    for load, angle, later in [*each_turn, *((*jump, 0.0) for jump in half_turns(scene))]:
         first, slopes = pairs.numbers(as_field(value_of(angle))), slopes_of(angle)
         moves = np.array([pairs.numbers(as_field(slopes.get(path, 0.0))) for path in scene.to])
-        for k in range(round(scene.period / turn)):
-            yield load, first + k * turn, moves
+        yield load, first + later, moves
 
 
 def _unlike(pairs: Pairs, one: Array, other: Array) -> Array:

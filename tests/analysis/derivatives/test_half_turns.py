@@ -9,6 +9,15 @@ from linksweep.scene.parameters import free, replaced
 LINKS = ls.Link(0.08, 0.3, 2e-4, 0.03, 20.0), ls.Link(0.22, 0.8, 3e-3, 0.1, -15.0), ls.Link(0.18, 0.6, 2e-3, 0.08, 10.0)
 FOUR = ls.FourBar(*LINKS, ground=0.2)
 PISTON = ls.SliderCrank(*LINKS[:2], slider_mass=1.2, offset=0.01, slide_angle=7.0)
+BAR = {"width": 0.02, "thickness": 0.02, "density": 7850.0}
+GEARED = ls.Linkage(
+    "crank A-B, wheel D-E : -3/2 crank, left B-C, right E-C",
+    ground={"A": (0, 0), "D": (0.24, 0)},
+    branch={"C": "crossed"},
+    gears={"wheel": ls.Gears(phase=180.0)},
+    **dict.fromkeys(("crank", "wheel"), ls.Bar(0.05, **BAR)),
+    **dict.fromkeys(("left", "right"), ls.Bar(0.26, **BAR)),
+)
 OF = ["T12_rms", "F32_mean", "flywheel_inertia"]
 
 
@@ -18,7 +27,7 @@ def sprung(from_, to, free_angle, machine=FOUR) -> ls.Scene:
 
 def differences(scene, name, path):
     """Return the median of five differences: now and then a flywheel is 1e-6 off, its jump beside a piece's end."""
-    value, step = free(scene)[path][0], 0.004 if path.endswith("angle") else 2e-6
+    value, step = free(scene)[path][0], 0.004 if path.endswith(("angle", "phase")) else 2e-6
     widths = xr.DataArray([1.0, 2.0, 3.0, 4.0, 5.0], dims="width") * step
     moved = replaced(scene, {path: value + widths * xr.DataArray([1.0, -1.0], dims="side")})
     results = ls.flywheel(moved, fluctuation=0.02) if name == "flywheel_inertia" else ls.peaks(moved, of=[name])
@@ -60,3 +69,15 @@ def test_designs_whose_twist_passes_180_twice_or_never():
     for name in OF:
         expected = differences(scene, name, "loads[1].free_angle")
         assert ds[f"{name}_derivative"].values[..., 0] == pytest.approx(expected, rel=2e-6), name
+
+
+def test_a_spring_on_a_wheel_jumps_at_other_angles_in_each_turn():
+    """The wheel turns three times in two turns of the crank, past 180 degrees of twist every 240 degrees of these."""
+    scene = ls.Scene(GEARED, 10.0, loads=[ls.TorsionSpring("ground", "wheel", 4.0, 35.0)])
+    paths = ["loads[1].free_angle", "gears.wheel.phase"]
+    ds = ls.sensitivities(scene, of=["T12_mean", "T12_rms", "flywheel_inertia"], to=paths)
+    assert ds.T12_mean_derivative.values == pytest.approx([0.0, 0.0], abs=1e-7)
+    for name in ("T12_rms", "flywheel_inertia"):
+        expected = [float(differences(scene, name, path)) for path in paths]
+        assert ds[f"{name}_derivative"].values == pytest.approx(expected, rel=1e-5), name
+        assert ds[f"{name}_status"] == 0
