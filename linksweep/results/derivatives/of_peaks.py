@@ -33,7 +33,6 @@ from linksweep.engine.trace.derivatives import derivative_of
 from linksweep.results.derivatives.samples import Pairs, pairs_over
 from linksweep.results.derivatives.sides import bends, unlisted
 from linksweep.results.peak_search.along_paths import on_own_side
-from linksweep.results.peak_search.paths import ASIDE
 from linksweep.results.peak_search.rises import at_arc_ends, equal_rises
 from linksweep.scene.derivatives.differentiated import ANGLE, differentiated
 from linksweep.scene.derivatives.sloped import Sloped, slopes_of, value_of
@@ -53,6 +52,8 @@ SETTLED = 1e-9
 """Step of the last secant [rad] below which a peak counts as smooth."""
 BESIDE = 1e-6
 """Distance within which angles are the same [degree]."""
+SIDE = 1e-8
+"""Distance from a jump [degree] at which its two sides are compared."""
 SAME = 1e-8
 """Difference of a peak and its polished one, relative to it, beyond which they are not the same."""
 APART = 1e-3
@@ -75,6 +76,18 @@ class PeakDerivatives(NamedTuple):
     slopes: Array
     corners: Array
     status: Array
+
+
+class AtJumps(NamedTuple):
+    """Jumps and bends at an angle of each design: whether there are any, and all move in a way that is known; whether
+    some may be moved; their place [degree], NaN for none; and how far, least and most, parameters move them (parameter,
+    design) [rad]."""
+
+    known: Array
+    jumps: Array
+    place: Array
+    least: Array
+    most: Array
 
 
 class RiseDerivatives(NamedTuple):
@@ -104,7 +117,7 @@ def peak_derivatives(
     pairs = pairs_over(own, angle.dims)
     at, peak = pairs.numbers(angle), pairs.numbers(value)
     slopes, corners, known = rise_derivatives(pairs, name, to, at, peak)
-    corners |= _corners(pairs, name, to, at, peak, largest, slopes) | _across_seams(pairs, name, to, at, peak, slopes)
+    corners |= _corners(pairs, name, to, at, peak, largest, slopes) | _across_jumps(pairs, name, to, at, peak)
     status = np.where(known, np.where(corners.any(axis=0), TIE, OK), JUMP)
     at_ends = at_arc_ends(own.plain, pairs.designs, at, 10.0 * BESIDE)
     status = np.where(at_ends | np.isnan(slopes).any(axis=0), ARC_END, status)  # or a load's position counts from there
@@ -116,9 +129,11 @@ def peak_derivatives(
 def rise_derivatives(pairs: Pairs, name: str, to: tuple[str, ...], angles: Array, heights: Array) -> RiseDerivatives:
     """Return the derivatives of a quantity's extremes at these angles [degree]."""
     polished, smooth = _polished(pairs, name, angles)
-    held, jumps, *moves = _at_jumps(pairs, angles, to)
+    at_jumps = _at_jumps(pairs, angles, to)
     (polished_heights,) = pairs.at((name,), polished)
-    smooth &= ~jumps & (np.abs(polished_heights - heights) <= SAME * np.abs(heights))  # not in the middle of a jump
+    smooth &= ~at_jumps.jumps & (
+        np.abs(polished_heights - heights) <= SAME * np.abs(heights)
+    )  # not in the middle of a jump
     sides = on_own_side(
         lambda rows, places: pairs.some(rows).at((name,), places)[0], angles, heights, pairs.scene.period
     )
@@ -126,8 +141,8 @@ def rise_derivatives(pairs: Pairs, name: str, to: tuple[str, ...], angles: Array
     values = pairs.at(tuple(derivative_of(name, path) for path in (*to, ANGLE)), place)
     slopes, steep = values[:-1], values[-1]
     with np.errstate(invalid="ignore"):
-        least, most = (np.where(smooth, slopes, slopes + steep * way) for way in moves)
-    return RiseDerivatives(most, _unlike(pairs, to, least, most, heights), smooth | held)
+        least, most = (np.where(smooth, slopes, slopes + steep * way) for way in at_jumps[-2:])
+    return RiseDerivatives(most, _unlike(pairs, to, least, most, heights), smooth | at_jumps.known)
 
 
 def turning_point_derivatives(scene: Scene, name: str, angle: Field, to: tuple[str, ...]) -> tuple[Pairs, Array, Array]:
@@ -157,28 +172,29 @@ def _polished(pairs: Pairs, name: str, angles: Array) -> tuple[Array, Array]:
     return np.where(smooth & ~flat, at, angles), smooth
 
 
-def _at_jumps(pairs: Pairs, angles: Array, to: tuple[str, ...]) -> tuple[Array, Array, Array, Array]:
-    """Return whether each angle is one at which a force jumps or bends, and none in a way that is not known; whether a
-    force jumps there; and how far, least and most, parameters move those at it (parameter, design) [rad]."""
-    scene = pairs.scene
+def _at_jumps(pairs: Pairs, angles: Array, to: tuple[str, ...]) -> AtJumps:
+    """Return the jumps and bends at an angle of each design."""
+    scene, turn = pairs.scene, pairs.scene.mechanism.period
     held, jumps, searched = np.zeros((3, len(angles)), dtype=bool)
     least, most = np.full((2, len(to), len(angles)), np.nan)
+    place = np.full(len(angles), np.nan)
     for angle in scene.quick.angles:
-        held |= _near(angles, angle, scene.period)
+        here = _near(angles, angle, scene.period)
+        held, place = held | here, np.where(here, angle, place)
     for jump in scene.moving_jumps:
-        turn = scene.mechanism.period
-        here = _near(angles, np.mod(_over(pairs, value_of(jump.angle)), turn), turn)
+        angle = _over(pairs, value_of(jump.angle))
+        here = _near(angles, angle, turn)
         if not isinstance(jump.angle, Sloped | float):
             searched |= here
             continue
-        jumps |= here
+        jumps, place = jumps | here, np.where(here, angles - signed_distance(angles, angle, turn), place)
         for k, path in enumerate(to):
             way = np.where(here, np.radians(_over(pairs, slopes_of(jump.angle).get(path, 0.0))), np.nan)
             least[k], most[k] = np.fmin(least[k], way), np.fmax(most[k], way)
     stays = bends(pairs, unlisted(scene), np.where(jumps, angles, np.nan))
     least, most = (np.where(stays, end(way, 0.0), way) for end, way in ((np.minimum, least), (np.maximum, most)))
     searched |= _at_reversals(pairs, angles)
-    return (held | jumps) & ~searched, jumps, np.nan_to_num(least), np.nan_to_num(most)
+    return AtJumps((held | jumps) & ~searched, jumps, place, np.nan_to_num(least), np.nan_to_num(most))
 
 
 def _at_reversals(pairs: Pairs, angles: Array) -> Array:
@@ -239,14 +255,18 @@ def _corners(
     return corners
 
 
-def _across_seams(pairs: Pairs, name: str, to: tuple[str, ...], angles: Array, peak: Array, slopes: Array) -> Array:
-    """Return for which parameters (parameter, design) a side of a seam at the peak is as high, and changes
+def _across_jumps(pairs: Pairs, name: str, to: tuple[str, ...], angles: Array, peak: Array) -> Array:
+    """Return for which parameters (parameter, design) both sides of a jump at the peak are as high, and change
     differently."""
-    scene, corners = pairs.scene, np.zeros(slopes.shape, dtype=bool)
-    for seam in scene.mechanism.seams(scene.profile):
-        for side in (-ASIDE, ASIDE):
-            place = np.where(_near(angles, seam, scene.period), np.mod(seam + side, scene.period), np.nan)
-            height, *others = pairs.at((name, *(derivative_of(name, path) for path in to)), place)
-            equal = np.abs(height - peak) <= EQUAL * np.abs(peak)
-            corners |= equal & _unlike(pairs, to, np.reshape(others, slopes.shape), slopes, peak)
-    return corners
+    at_jumps = _at_jumps(pairs, angles, to)
+    names = (name, *(derivative_of(name, path) for path in (*to, ANGLE)))
+    sides = [_beside(pairs, names, at_jumps.place, way) for way in (-SIDE, SIDE)]
+    equal = [np.abs(values[0] - peak) <= EQUAL * np.abs(peak) for values in sides]
+    before, after = (values[1:-1] + values[-1] * at_jumps.most for values in sides)
+    return equal[0] & equal[1] & _unlike(pairs, to, before, after, peak)
+
+
+def _beside(pairs: Pairs, names: tuple[str, ...], place: Array, way: float) -> Array:
+    """Return the limits (names, design) of quantities on one side of a place of each design, from two angles there."""
+    near, far = (pairs.at(names, np.mod(place + k * way, pairs.scene.period)) for k in (1.0, 3.0))
+    return 1.5 * near - 0.5 * far

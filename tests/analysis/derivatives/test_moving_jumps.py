@@ -158,3 +158,18 @@ def test_a_peak_at_a_dead_centre_where_a_load_bends_has_a_corner(machine, jumps)
     ds = ls.sensitivities(scene, of=["F12_peak"], to=[path])
     assert np.isnan(float(ds.F12_peak_derivative[0]))
     assert MEANINGS[int(ds.F12_peak_status)] == ("tie" if machine == "slider-crank" else "moving_jump")
+
+
+def test_two_sides_of_a_jump_that_are_as_high_tie():
+    """The force on the coupler turns round at 180 degrees, where it is largest: another adds to one side alone."""
+
+    def push(angle):
+        return np.where(angle % 360 < 180, 1.0, -1.0) * (1000.0 - 50.0 * abs(angle % 360 - 180))
+
+    loads = [ls.Load("coupler", force=(push, 0.0), breaks=[180.0, 0.0]), ls.Load("coupler", force=(0.0, 0.0))]
+    scene = replace(PRESS, gravity=(0.0, 0.0), omega2=1e-6, loads=loads)
+    forward, backward = differences(scene, "F32_peak", "loads[2].force[1]", 1e-3)
+    assert forward == pytest.approx(-backward, rel=1e-6) and abs(forward) > 0.1
+    ds = ls.sensitivities(scene, of=["F32_peak"], to=["loads[2].force[1]", "coupler.length"])
+    assert MEANINGS[int(ds.F32_peak_status)] == "tie" and np.isnan(ds.F32_peak_derivative[0])
+    assert float(ds.F32_peak_derivative[1]) == pytest.approx(0.0, abs=1e-6)  # it acts at that pin
