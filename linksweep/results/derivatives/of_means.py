@@ -20,9 +20,11 @@ from linksweep.scene.scene import Scene
 
 def mean_derivatives(scene: Scene, name: str, power: int, to: tuple[str, ...]) -> dict[str, xr.DataArray]:
     """Return the derivatives of the mean over time of a power (1 or 2) of a quantity, by parameter."""
-    names = (name, *changing_pace(scene.at_one_angle))
+    pace = changing_pace(scene.at_one_angle)
+    names = (name, *pace)
+    slope_of_sum = _slope_of_pace if name in pace else _slope_of_weighted
     requests = {
-        "sum": Integral(names, partial(_weighted, power), partial(_slope_of_weighted, power)),
+        "sum": Integral(names, partial(_weighted, power), partial(slope_of_sum, power)),
         "time": Integral(names, partial(_weighted, 0), partial(_slope_of_weighted, 0)),
     }
     total = integral_derivatives(scene, requests, to)
@@ -41,3 +43,9 @@ def _slope_of_weighted(power: int, value: Array, *others: Array) -> Array:
     pace, slope, slope_of_pace = others if len(others) == 3 else (np.ones(()), *others, np.zeros(()))
     of_value = power * value ** (power - 1) * slope if power else np.zeros(())
     return (of_value - value**power * slope_of_pace / pace) / np.abs(pace) + 0.0 * (value / pace)
+
+
+def _slope_of_pace(power: int, pace: Array, *others: Array) -> Array:
+    """Return d(v^n/|v|)/dp: 0 of the pace itself, of which the slopes of both would leave rounding errors."""
+    _, slope, _ = others
+    return (power - 1) * np.sign(pace) * pace ** (power - 2) * slope + 0.0 * pace

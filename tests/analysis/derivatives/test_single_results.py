@@ -237,3 +237,21 @@ def test_the_flywheel_does_not_depend_on_alpha2():
     alone, beside = (ls.sensitivities(press, of="flywheel_inertia", to=to) for to in (["alpha2"], ["ground", "alpha2"]))
     assert alone.flywheel_inertia_derivative.values.tolist() == [0.0] and alone.flywheel_inertia_status == 0
     assert beside.flywheel_inertia_derivative.sel(parameter="alpha2") == 0.0
+
+
+def test_the_mean_speed_of_a_car_has_the_derivative_of_its_time():
+    """The mean of the speed is the lap over its time, whatever the speed in it."""
+    car = replace(ls.example("loop"), profile="energy", thrust=3000.0)
+    ds = ls.sensitivities(car, of=["speed_mean", "speed_rms"], to=["speed", "thrust"])
+    angles = np.radians((np.arange(4096) + 0.5) * 360.0 / 4096)
+    radius, mass = car.mechanism.radius, car.mechanism.mass
+
+    def speed_mean(speed, thrust):
+        work = thrust * radius * angles / mass - 9.81 * radius * (1.0 - np.cos(angles))
+        return 1.0 / np.mean(1.0 / np.sqrt(speed**2 + 2.0 * work))
+
+    assert float(ds.speed_mean) == pytest.approx(speed_mean(car.speed, 3000.0), rel=1e-6)
+    of_speed = (speed_mean(car.speed + 0.01, 3000.0) - speed_mean(car.speed - 0.01, 3000.0)) / 0.02
+    of_thrust = (speed_mean(car.speed, 3001.0) - speed_mean(car.speed, 2999.0)) / 2.0
+    assert ds.speed_mean_derivative.values == pytest.approx([of_speed, of_thrust], rel=1e-5)
+    assert int(ds.speed_mean_status) == 0
