@@ -155,7 +155,7 @@ def test_without_shtab_the_message_states_how_to_install_it(monkeypatch, capsys)
 
 NO_COMMAND = """
     analysis/balance/best_counterweights.py analysis/balance/shaking.py analysis/design/objective.py
-    analysis/design/searches.py analysis/drive/flywheel.py analysis/pins/bearing.py analysis/pins/main_bearings.py
+    analysis/design/searches.py analysis/drive/flywheel.py analysis/pins/bearing.py results/cylinders/multi_cylinder.py
     analysis/pins/pin_friction.py analysis/strength/strength.py files/pmks/from_pmks.py mechanisms/mechanism.py
     physics/closures/freudenstein.py results/compute.py scene/curves/over_angle.py scene/curves/over_position.py
     scene/derivatives/sloped.py scene/designs/combinations.py

@@ -109,7 +109,7 @@ class GasPressure(ChangingLoad):
             return [f"{path} is a GasPressure on {lack(mechanism, 'engine_cylinder')}, or a Load"]
         if self.cycle and lack(mechanism, "engine_cylinder"):
             wrong = f"{path}.pressure is a cycle, which takes a SliderCrank, not a {type(mechanism).__name__}"
-            return [f"{wrong}: give its pressure over theta2, as an xarray.DataArray or a function"]
+            return [f"{wrong}: give its pressure over theta2"]
         if problems := choice_problems(f"{path}.link", self.link, mechanism.sliders):
             return problems
         if "branch" in mechanism.both_branches:
