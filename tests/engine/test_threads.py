@@ -136,15 +136,15 @@ def test_a_property_is_computed_once_where_several_threads_ask_for_it():
             time.sleep(0.01)
             return len(computed)
 
-    owner, found = Owner(), []
+    owner, numbers = Owner(), []
 
     def ask() -> None:
         meeting.wait()
-        found.append(owner.number)
+        numbers.append(owner.number)
 
     asking = [threading.Thread(target=ask) for _ in range(4)]
     for thread in asking:
         thread.start()
     for thread in asking:
         thread.join()
-    assert found == [1] * 4 and len(computed) == 1
+    assert numbers == [1] * 4 and len(computed) == 1

@@ -15,7 +15,6 @@ from benchmarks.stress.attacks import Outcome
 from benchmarks.stress.six_bars import KINDS, OTHERS
 from linksweep.engine.quantity import Limit
 from linksweep.results.peak_search import limits as one_after_the_other
-from linksweep.results.peak_search.between import EVERYWHERE
 from linksweep.results.peak_search.limits import Limits, find_limits
 from linksweep.results.peak_search.side_by_side import Events, search_side_by_side
 
@@ -25,7 +24,7 @@ SMALL = 3
 DESIGNS = 1000
 """Designs of one kind in a round."""
 ALLOWED = 1e-6
-"""Difference between two angles that are the same [degree]; an arc may be shorter."""
+"""Difference between two angles that are the same, and length of an arc that is a point [degree]."""
 
 Array = np.ndarray
 
@@ -41,11 +40,11 @@ def attack(random: np.random.Generator, rounds: int) -> Outcome:
 def unequal(scene: ls.Scene) -> Iterator[str]:
     """Yield a sentence about each table of limits of a scene that differs between the searches, with a design."""
     machine, limits, designs = scene.unloaded, scene.table.limits or (), np.arange(DESIGNS)
-    found = find_limits(machine, limits, designs)
+    both = find_limits(machine, limits, designs)
     with patch.object(one_after_the_other, "search_side_by_side", _of_none):
         other = find_limits(machine, limits, designs)
-    for name in ("arc_start", "arc_end", "zeros"):
-        tables = [_on_arcs(getattr(some, name), other, machine.period) for some in (found, other)]
+    pairs = zip(_comparable(both, other, machine.period), _comparable(other, other, machine.period), strict=True)
+    for name, tables in zip(("starts of arcs", "ends of arcs", "zeros"), pairs, strict=True):
         odd = _alone(*tables, machine.period) | _alone(*tables[::-1], machine.period)
         if odd.any():
             k = np.flatnonzero(odd)[0]
@@ -53,14 +52,15 @@ def unequal(scene: ls.Scene) -> Iterator[str]:
             yield f"{name} of {odd.sum()} designs, of design {k}: {one} degrees, and {two}"
 
 
-def _on_arcs(angles: Array, limits: Limits, period: float) -> Array:
-    """Return angles (design, …), NaN in place of those at which the machine does not close: nobody asks for these."""
-    start, end = (
-        table.reshape(len(table), *[1] * (angles.ndim - 1), -1) for table in (limits.arc_start, limits.arc_end)
-    )
-    along = np.mod(angles[..., None] - start + ALLOWED, period)
-    closes = (along <= end - start + 2.0 * ALLOWED).any(axis=-1)
-    return np.where(closes | (limits.assembly == EVERYWHERE).reshape(-1, *[1] * (angles.ndim - 1)), angles, np.nan)
+def _comparable(limits: Limits, known: Limits, period: float) -> tuple[Array, Array, Array]:
+    """Return starts, ends and zeros (design, …), NaN in place of arcs that are points, and of zeros that do not lie
+    inside a known arc: nobody asks for these."""
+    starts, ends, zeros = limits.arc_start, limits.arc_end, limits.zeros
+    lengths, known_lengths = ends - starts, known.arc_end - known.arc_start
+    along = np.mod(zeros[..., None] - known.arc_start[:, None, None], period)
+    inside = (along > ALLOWED) & (along < known_lengths[:, None, None] - ALLOWED)
+    arcs = (np.where(lengths > ALLOWED, table, np.nan) for table in (starts, ends))
+    return *arcs, np.where(inside.any(axis=-1), zeros, np.nan)
 
 
 def _alone(one: Array, two: Array, period: float) -> Array:

@@ -127,8 +127,8 @@ def test_three_zeros_that_samples_show_as_one_beside_a_toggle(mirrored):
         for _ in range(3):
             angles, widths, left = near_zero(height, dips.BOUND, cuts)
             cuts += [(at, 1e-3) for at in angles[widths < 0.0]]
-        found = np.sort(side * away(angles[widths == 0.0], toggle))
-        np.testing.assert_allclose(found, scale * zeros, rtol=1e-9)
+        places = np.sort(side * away(angles[widths == 0.0], toggle))
+        np.testing.assert_allclose(places, scale * zeros, rtol=1e-9)
         assert not left
 
 
