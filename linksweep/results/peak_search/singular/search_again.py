@@ -65,11 +65,11 @@ def raise_beside_breaks(group: Group, peaks: dict[str, SignalPeak], part: Part |
         closer = numbers_of(peak, group)
         put(peak, group, known[signal])
         higher = np.flatnonzero(closer[0] > known[signal][0])
-        if len(higher):
-            away = np.abs(signed_distance(breaks[higher], closer[1][higher, None], group.scene.period))
-            rise = (closer[0] - known[signal][0])[higher]
-            smooth = higher[are_smooth(group.some(higher), signal, closer[1][higher], np.nanmin(away, axis=1), rise)]
-            raise_to(peak, group.some(smooth), tuple(numbers[smooth] for numbers in closer))
+        own, (value, at, *others) = group.some(higher), (numbers[higher] for numbers in closer)
+        away = np.abs(signed_distance(breaks[higher], at[:, None], group.scene.period))
+        nearest = np.fmin.reduce(away, axis=1, initial=np.inf)
+        smooth = are_smooth(own, signal, at, nearest, value - known[signal][0][higher])
+        raise_to(peak, own.some(smooth), tuple(numbers[smooth] for numbers in (value, at, *others)))
 
 
 def _search_clear_of(
