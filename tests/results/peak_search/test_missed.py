@@ -56,6 +56,7 @@ def test_a_peak_at_once_after_the_start_of_a_piece_is_found():
         ("Watt six-bar by its output", 7_000_051, 0, 6522),  # as the one before it
         ("Watt six-bar by its output", 7_000_065, 0, 4822),  # a trial on the higher top fell beyond a lower trial
         ("Watt six-bar by its output", 20, 1, 2596),  # beside a dead centre, at which rounding errors hid the slope
+        ("Watt six-bar by its output", 10_000_003, 0, 2288),  # 0.15° from a dead centre
         ("Watt six-bar by its output", 10_000_042, 0, 3824),  # beside two dead centres, one within 10° of the other
         ("Watt six-bar by its output", 10_000_054, 0, 6491),  # two summits within half the width of a near-toggle
         ("Watt six-bar by its output", 10_000_068, 0, 4954),  # 0.003° from a dead centre, at which rounding was as high
