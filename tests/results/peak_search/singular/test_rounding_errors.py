@@ -10,7 +10,7 @@ from oracle import FourBarData, LinkData, solve, to_scene
 import linksweep as ls
 from benchmarks.stress.linkages.topologies import AWAY_FROM_TOGGLES
 from benchmarks.stress.six_bars import any_linkage
-from linksweep.results.peak_search.singular.rounding_errors import clear_of
+from linksweep.results.peak_search.singular.rounding_errors import Singular, clear_of
 
 SINGULAR = np.array([[100.0, 40.0], [350.0, math.nan]])
 """Angles of singular places, of two designs."""
@@ -182,3 +182,11 @@ def test_parts_clear_of_singular_places(part):
     for k, expected in enumerate(PARTS[part]):
         parts = [(start, end) for start, end in zip(starts[:, k], ends[:, k], strict=True) if start < end]
         np.testing.assert_allclose(parts, expected, rtol=1e-12)
+
+
+def test_a_search_close_to_one_place_keeps_clear_of_those_that_it_was_too_far_from_before():
+    """Design 3 has another place 1.5 degrees away, across 0, design 7 one 40 degrees away."""
+    places = Singular(np.array([3, 3, 5, 7, 7]), np.array([359.5, 1.0, 1.0, 20.0, 60.0]), np.zeros(5, dtype=bool))
+    angles, distances = places.close_to(np.array([3, 7]), np.array([10.24, 0.0, 0.0, 0.0, 0.01]), 360.0)
+    np.testing.assert_array_equal(angles, [[359.5, 1.0], [math.nan, 60.0]])
+    np.testing.assert_array_equal(distances, [[10.24, 10.24], [0.0, 0.01]])
