@@ -42,19 +42,32 @@ def known_jumps(pairs: Pairs) -> Jumps:
     shape = (len(pairs.scene.to), len(pairs.designs))
     angles = np.array([angle for _, angle, _ in sources]).reshape(-1, shape[1])
     moves = np.array([own for *_, own in sources]).reshape(-1, *shape)
-    parted = np.zeros(shape, dtype=bool)
+    loads, jumps = [load for load, *_ in sources], Jumps(angles, moves, np.zeros(shape, dtype=bool))
     for i in range(moving):
         near = np.abs(signed_distance(angles, angles[i], pairs.scene.period)) < BESIDE
-        for j in np.flatnonzero(near.any(axis=1)):
+        for j in map(int, np.flatnonzero(near.any(axis=1))):
             if j > i:
-                one, other = (near[j] & _leaps(pairs, sources[k][0], angles[k]) for k in (i, j))
-                parted |= one & other & _unlike(pairs, moves[i], moves[j])
-                angles[j, one], angles[i, near[j] & ~one] = np.nan, np.nan
-        if (other := leaps(pairs, unlisted(pairs.scene), angles[i])).any():
-            one = other & _leaps(pairs, sources[i][0], angles[i])
-            parted |= one & (moves[i] != 0.0)
-            angles[i, other & ~one] = np.nan
-    return Jumps(angles[:moving], moves[:moving], parted)
+                _unite(pairs, loads, jumps, (i, j), near[j])
+        _leave_to_unlisted(pairs, loads, jumps, i)
+    return Jumps(angles[:moving], moves[:moving], jumps.parted)
+
+
+def _unite(pairs: Pairs, loads: list[int], jumps: Jumps, two: tuple[int, int], near: Array) -> None:
+    """Leave one of two jumps that are near each other: the first, or the second where the first load only bends."""
+    (i, j), (angles, moves, parted) = two, jumps
+    one, other = (near & _leaps(pairs, loads[k], angles[k]) for k in two)
+    parted |= one & other & _unlike(pairs, moves[i], moves[j])
+    angles[j, one], angles[i, near & ~one] = np.nan, np.nan
+
+
+def _leave_to_unlisted(pairs: Pairs, loads: list[int], jumps: Jumps, i: int) -> None:
+    """Leave a jump out where its load only bends and others jump that no parameter moves; mark it where it parts."""
+    angles, moves, parted = jumps
+    other = leaps(pairs, unlisted(pairs.scene), angles[i])
+    if other.any():
+        one = other & _leaps(pairs, loads[i], angles[i])
+        parted |= one & (moves[i] != 0.0)
+        angles[i, other & ~one] = np.nan
 
 
 def parted_jumps(scene: Scene, to: tuple[str, ...]) -> dict[str, xr.DataArray]:
