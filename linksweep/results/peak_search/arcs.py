@@ -157,7 +157,7 @@ def _samples_and_cuts(group: Group, middle: Array, half: Array, at_jumps: Array,
     near = QUARTER - NEAREST * 2.0 ** np.arange(0.0, np.log2(np.pi / len(even) / NEAREST), 0.5)
     shared = np.broadcast_to(np.concatenate([even, near, -near]), (len(middle), len(even) + 2 * len(near)))
     breaks = np.concatenate([at_jumps, kinks(group)], axis=1)
-    special = near_toggle_samples(group), beside_breaks(group, breaks), both_sides(at_jumps)
+    special = near_toggle_samples(group), beside_breaks(breaks), both_sides(at_jumps)
     graded, sides, jumps = (_on_arc(angles, middle, half, period) for angles in special)
     quick = _on_arc(_quick_and_even(group), middle, half, period)
     close = _on_arc(approach_samples(group, _angles(middle, half, even)), middle, half, period)

@@ -43,7 +43,7 @@ BESIDE = np.array([ASIDE, 1e-3, 0.01, 0.1, 0.3, 1.0, 2.0, 4.0, 7.0, 11.0, 16.0, 
 AT_JUMP = 0.1 * ASIDE
 """Distance from a jump within which an angle is at it, or samples are one [degree]."""
 FARTHER_ASIDE = 1e-4, 0.01
-"""Distances from a break of more samples, where summits may hide close by [degree]."""
+"""Distances from a break of more samples: of summits on both sides of a kink, its own sides would show one [degree]."""
 CLOSE_BESIDE = np.array([1e-4, 3e-4, 1e-3, 3e-3, 0.01, 0.03, 0.1, 0.3, 1.0])
 """Distances from a break of the samples of a window on either side, up to those of a turn [degree]."""
 SHORT_LAP, PER_LAP = 30.0, 12
@@ -106,7 +106,7 @@ def turns(group: Any) -> Paths:
     even, quick = (np.broadcast_to(angles, (len(group.designs), len(angles))) for angles in (even, group.quick))
     graded = _graded_over_period(group)
     at_jumps = jump_angles(group)
-    sides, jumps = beside_breaks(group, np.concatenate([at_jumps, kinks(group)], axis=1)), both_sides(at_jumps)
+    sides, jumps = beside_breaks(np.concatenate([at_jumps, kinks(group)], axis=1)), both_sides(at_jumps)
     close = approach_samples(group)[:, ::7]
     # a piece between cuts has 15 nodes of its own: it needs fewer cuts than a search needs samples
     samples, edges = (
@@ -198,10 +198,9 @@ def both_sides(angles: Array, away: float = ASIDE) -> Array:
     return np.concatenate([angles - away, angles + away], axis=1)
 
 
-def beside_breaks(group: Group, breaks: Array) -> Array:
+def beside_breaks(breaks: Array) -> Array:
     """Return samples (design, sample) on both sides of each break [degree]."""
-    distances = (ASIDE, *FARTHER_ASIDE) if may_hide_summits(group.scene) else (ASIDE,)
-    return np.concatenate([both_sides(breaks, away) for away in distances], axis=1)
+    return np.concatenate([both_sides(breaks, away) for away in (ASIDE, *FARTHER_ASIDE)], axis=1)
 
 
 def breaks_of(group: Group) -> Array:

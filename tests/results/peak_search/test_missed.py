@@ -48,6 +48,7 @@ def test_a_peak_at_once_after_the_start_of_a_piece_is_found():
         ("knuckle-joint press with friction", 0, 150_000, 696),  # a ram that moves by nanometres: rounding hides where
         ("knuckle-joint press with friction", 0, 610_000, 7910),  # it slides, but near the near-toggle
         ("knuckle-joint press with friction", 9, 270_000, 3882),  # at once after the start of a piece
+        ("knuckle-joint press of any lengths", 20_000_008, 0, 5414),  # on both sides of a kink, between its samples
         ("Watt six-bar", 5, 10_000, 9818),  # two tops about one sample, both on the quartic through five
         ("Watt six-bar", 10, 610_000, 3623),  # a narrow top beside a sample, between a steep flank and a level one
         ("inverted slider-crank", 1_000_084, 0, 6848),  # between samples, each half as far from a narrow near-toggle
