@@ -79,6 +79,7 @@ def test_a_design_is_the_same_alone_and_with_others():
     [
         ((LENGTHS, []), "designs = []: must be numbers of designs, whole and from 0, such as [17, 20] or range(100)"),
         ((LENGTHS, 3), "designs = 3: must be numbers of designs"),
+        ((LENGTHS, [2**63 + 5]), "designs = [9223372036854775813]: must be numbers of designs"),
         ((LENGTHS, [-1]), "designs = [-1]: must be numbers"),
         ((LENGTHS, [0.5]), "designs = [0.5]: must be numbers"),
         (({"coupler.lenth": (0.2, 0.3)}, [1]), "parameters: nothing is named 'coupler.lenth'"),

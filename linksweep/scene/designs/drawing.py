@@ -20,6 +20,8 @@ WORDS = 4
 BITS = 52
 """Bits of a level: with them (k + 1/2)·2⁻⁵² is exact, and neither 0 nor 1, where a normal is infinite."""
 SEEDS = 2**128
+LABELS = 2**63
+"""Numbers of designs are below it, so that they are labels of 64 bits with a sign."""
 
 
 def draw(
@@ -50,8 +52,8 @@ def draw(
     Raises
     ------
     ValueError
-        One line for each parameter that is unknown or whose range is invalid; for numbers of designs below 0; and for
-        values that the scene refuses.
+        One line for each parameter that is unknown or whose range is invalid; for numbers of designs below 0 or from
+        2^63 on; and for values that the scene refuses.
 
     Examples
     --------
@@ -93,7 +95,8 @@ def _numbers(designs: Any) -> np.ndarray:
     else:
         numbers = np.asarray(list(designs) if _several(designs) else None)
     sound = numbers.ndim == 1 and numbers.size and numbers.dtype.kind in "iu"
-    refuse([] if sound and numbers.min() >= 0 else [f"designs = {quote(designs)}: {advice}"])
+    labels = sound and numbers.min() >= 0 and numbers.max() < LABELS
+    refuse([] if labels else [f"designs = {quote(designs)}: {advice}"])
     return numbers.astype(np.int64)
 
 
