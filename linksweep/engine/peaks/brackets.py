@@ -2,7 +2,8 @@
 
              b            a < b < c bracket a peak. Each round evaluates the signal at three trials about the vertex
         a    |            of the parabola through them, and keeps the best point with its neighbours. Where that
-        |    |    c       converges slowly (a kink, a jump), the two sides of b are bisected instead.
+        |    |    c       converges slowly (a kink, a jump), the two sides of b are bisected instead, and so
+                          they are at first: if these trials show a second top, it gets a bracket of its own.
 
 A bracket closes when its extended secants allow no further rise: a concave curve lies below them.
 """
@@ -54,6 +55,45 @@ def open_bracket(brackets, k, before, middle, after, far, signal, tag, floor):
     width = brackets[XC, k] - brackets[XA, k]
     # counted as slow: both sides are bisected first, for a bracket may hold two tops
     brackets[WIDTH, k], brackets[FIRST_WIDTH, k] = width, width
+
+
+def divide(brackets, count):
+    """Open another bracket for each whose first trials show a second top; return how many there are."""
+    every = count
+    for k in range(count):
+        first, known = brackets[WIDTH, k] == brackets[FIRST_WIDTH, k], brackets[FB, k] > -math.inf
+        if first and known and every < brackets.shape[1]:
+            every = open_second(brackets, k, every)
+    return every
+
+
+def open_second(brackets, k, new):
+    """Open a bracket about the second top of six points, those of a bracket and its trials, or between it and its
+    neighbour where it is an end; return how many brackets there are."""
+    p, f_p, q, f_q = brackets[X1, k], brackets[F1, k], brackets[XB, k], brackets[FB, k]
+    if q < p:
+        p, f_p, q, f_q = q, f_q, p, f_p
+    a, c = brackets[XA, k], brackets[XC, k]
+    left, right = (brackets[X2, k], brackets[F2, k]), (brackets[X3, k], brackets[F3, k])
+    top, second = max(left[1], f_p, f_q, right[1]), -math.inf
+    u, f_u, v, f_v = a, -math.inf, a, -math.inf  # two points before the first, and of no value
+    for w, f_w in ((a, brackets[FA, k]), left, (p, f_p), (q, f_q), right, (c, brackets[FC, k]), (c, -math.inf)):
+        lower = f_v - max(RISE * abs(f_v), brackets[FLOOR, k])
+        if f_u < lower and f_w < lower and second < f_v and f_v < top:
+            second = f_v
+            start, middle, end = (u, f_u), (v, f_v), (w, f_w)
+            if u == v:
+                start, middle = (v, f_v), (0.5 * (v + w), -math.inf)
+            if v == w:
+                middle, end = (0.5 * (u + v), -math.inf), (v, f_v)
+        u, f_u, v, f_v = v, f_v, w, f_w
+    if second == -math.inf:
+        return new
+    far, signal, tag, floor = brackets[FAR, k], brackets[SIGNAL, k], brackets[TAG, k], brackets[FLOOR, k]
+    open_bracket(brackets, new, start, middle, end, far, signal, tag, floor)
+    brackets[FIRST_WIDTH, new] = brackets[FIRST_WIDTH, k]  # wider than it is: it is not divided again
+    brackets[X1, new], brackets[X2, new], brackets[X3, new] = middle[0], middle[0], middle[0]
+    return new + 1
 
 
 def evaluate_trials(brackets, first, last, constants, evaluate):
@@ -137,16 +177,17 @@ def larger(x, y):
     return (x > y).where(x, y)
 
 
-def advance(brackets, count, best):
-    """Note the highest points, and the results of brackets that are done; return how many remain."""
+def advance(brackets, count, every, best):
+    """Note the highest points, and the results of brackets that are done; return how many remain, with all new ones,
+    which follow the first `count`."""
     for k in range(count):
         tag = int(brackets[TAG, k])
         if brackets[FB, k] > best[PEAK, tag]:
             best[PEAK, tag], best[PEAK_X, tag], best[PEAK_FAR, tag] = brackets[FB, k], brackets[XB, k], brackets[FAR, k]
     still_open = 0
-    for k in range(count):
+    for k in range(every):
         tag, height = int(brackets[TAG, k]), brackets[FB, k]
-        if brackets[DONE, k] > 0.0 or height + 2.0 * brackets[REMAINING, k] < best[PEAK, tag]:
+        if k < count and (brackets[DONE, k] > 0.0 or height + 2.0 * brackets[REMAINING, k] < best[PEAK, tag]):
             if height >= best[PEAK, tag]:
                 best[PEAK_X, tag], best[PEAK_FAR, tag] = brackets[TOP_X, k], brackets[FAR, k]
                 best[BEYOND, tag] = brackets[TOP_BEYOND, k]
@@ -171,5 +212,6 @@ def refine(brackets, count, lanes, width, start, constants, gathered, evaluate, 
                 if front + lane < count:
                     best[EVALUATIONS, tag] += 3
             evaluate_trials(brackets, front, front + lanes, gathered, evaluate)
+        every = divide(brackets, count)
         insert_trials(brackets, count)
-        count = advance(brackets, count, best)
+        count = advance(brackets, count, every, best)

@@ -160,7 +160,7 @@ def confirm(summits, count, lanes, half, tables, evaluate, trials, brackets, gat
                 tops[number, tag] = trials[number, lane]
             tops[EVALUATIONS, tag] += 4 * half
             if trials[FINAL, lane] == 0.0:
-                if opened + 4 * half > brackets.shape[1]:
+                if 2 * (opened + 4 * half) > brackets.shape[1]:
                     refine(brackets, opened, lanes, width, 0, constants, gathered, evaluate, tops)
                     opened = 0
                 known = int(trials[SUMMIT, lane]) if trials[CONFIRMED, lane] > 0.0 else -1

@@ -26,7 +26,8 @@ TWIN, SMOOTH = 1e-6, 1000.0
 below which they are the two sides of a break at which it does not jump: rounding tells which of them is higher, and the
 bracket about one reaches beyond the other."""
 OF_PATHS = ("f8[:, :, :]", TABLE, TABLE, TABLE, INTEGER, TABLE, TABLE, INTEGERS)
-"""Kinds of the arguments of `open_on_paths`."""
+OF_DIVISION, OF_ADVANCE = (TABLE, INTEGER), (TABLE, INTEGER, INTEGER, TABLE)
+"""Kinds of the arguments of `open_on_paths`, and of `brackets.divide` and `advance`."""
 
 Array = np.ndarray
 Values = Callable[[Array, Array], Array]
@@ -51,7 +52,8 @@ def refine(table: Array, count: int, best: Array, values: Values) -> None:
     interpret = SEARCHES.should_interpret(count, INTERPRETED)
     steps = brackets.place_trials, brackets.insert_trials
     place_trials, insert_trials = (step if interpret else step.compiled for step in steps)
-    advance = brackets.advance if interpret else translated(brackets.advance, (TABLE, INTEGER, TABLE))
+    divide: Callable = brackets.divide if interpret else translated(brackets.divide, OF_DIVISION)
+    advance: Callable = brackets.advance if interpret else translated(brackets.advance, OF_ADVANCE)
     trials, values_there = (slice(first, first + len(brackets.TRIALS)) for first in (brackets.X1, brackets.F1))
     for _ in range(brackets.ROUNDS):
         if not count:
@@ -59,8 +61,9 @@ def refine(table: Array, count: int, best: Array, values: Values) -> None:
         place_trials(table, count)
         tag = np.tile(table[brackets.TAG, :count].astype(int), len(brackets.TRIALS))
         table[values_there, :count] = values(tag, table[trials, :count].ravel()).reshape(-1, count)
+        every = divide(table, count)
         insert_trials(table, count)
-        count = advance(table, count, best)
+        count = advance(table, count, every, best)
 
 
 # ------------------------------------------------------------------ plain Python that is translated to machine code

@@ -29,8 +29,8 @@ BLOCKS = 32
 NARROW_TOGGLE = 1e-3
 """Half-width of a near-toggle below which samples may lie too far apart: each is then 1.4 to 2.4 times as far from the
 near-toggle as the last one, and two of a million searches missed a summit between neighbours."""
-ROOM = 4 * SAMPLES
-"""Brackets that are refined together, at most."""
+ROOM = 8 * SAMPLES
+"""Brackets that are refined together, at most: half of them, each of which may be divided once."""
 CAUTION = 3.0
 """Third derivatives that the error of a vertex allows for, of those that the samples show."""
 
@@ -88,7 +88,7 @@ def search(
                 for lane in range(lanes):
                     close = sparse or min(own[lane], own[lanes + lane]) < NARROW_TOGGLE
                     if close or not smooth or state[FINAL, column + lane] == 0.0:
-                        if count + 2 * SAMPLES > brackets.shape[1]:
+                        if 2 * (count + 2 * SAMPLES) > brackets.shape[1]:
                             refine(brackets, count, lanes, width, start * lanes, constants, gathered, evaluate, best)
                             count = 0
                         trusted, of = smooth and not sparse, tag + lane

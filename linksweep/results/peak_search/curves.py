@@ -130,7 +130,7 @@ def parabola(brackets: Extremes) -> tuple[Array, Array]:
 def _refined(curves: Curves, brackets: Extremes) -> Extremes:
     """Return the extremes at their places, by the search for peaks: each has a lane and a tag of its own."""
     count, place = len(brackets.curve), brackets.x[1]
-    lanes, best = np.zeros((search.BRACKET_ROWS, search.in_blocks(count))), np.empty((search.BEST_ROWS, count))
+    lanes, best = np.zeros((search.BRACKET_ROWS, search.in_blocks(2 * count))), np.empty((search.BEST_ROWS, count))
     before, middle, after = zip(brackets.x, -brackets.sign * brackets.values, strict=True)
     search.open_bracket(lanes, slice(count), before, middle, after, 0.0, 0.0, np.arange(count), brackets.noise)
     best[search.PEAK], best[search.PEAK_X] = lanes[search.FB, :count], place

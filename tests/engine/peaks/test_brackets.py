@@ -19,12 +19,14 @@ def one(points: tuple[float, ...]) -> np.ndarray:
 
 
 def refine(table: np.ndarray, best: np.ndarray, height: Callable[[np.ndarray], np.ndarray]) -> None:
+    count = 1
     for _ in range(b.ROUNDS):
-        b.place_trials(table, 1)
-        table[list(b.VALUES), 0] = height(table[list(b.TRIALS), 0])
+        b.place_trials(table, count)
+        table[list(b.VALUES), :count] = height(table[list(b.TRIALS), :count])
+        every = b.divide(table, count)
         with np.errstate(all="ignore"):
-            b.insert_trials(table, 1)
-        if not b.advance(table, 1, best):
+            b.insert_trials(table, count)
+        if not (count := b.advance(table, count, every, best)):
             return
 
 
@@ -73,6 +75,25 @@ def test_two_equal_peaks_are_found_from_the_dip_between_them(away):
     value, place, _, beyond = best[:, 0]
     assert 5.0 + 5e-9 - value <= min(beyond, 5e-11)
     assert abs(place) == pytest.approx(away, rel=1e-3)
+
+
+@pytest.mark.parametrize("places", [(-0.4, 0.55), (-0.6, 0.3), (-0.35, 0.9), (-0.95, 0.2)])
+@pytest.mark.parametrize("higher", [0, 1])
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+def test_of_two_tops_in_one_bracket_the_higher_one_is_found(places, higher, side):
+    """The tops are so narrow that each leaves the other as it is. A bracket holds one of them alone: the first trials,
+    in the valley between them, show the other, as a trial or as a rise to an end."""
+    heights = 5.0 + 1e-6 * np.eye(2)[higher]
+
+    def height(x):
+        return sum(h * np.exp(-(((side * x - place) / 0.15) ** 2)) for h, place in zip(heights, places, strict=True))
+
+    start = side * (places[1 - higher] + 0.02)
+    table, best = one((-1.0, height(-1.0), start, height(start), 1.0, height(1.0))), np.zeros((b.BEST_ROWS, 1))
+    table[b.WIDTH] = table[b.FIRST_WIDTH]
+    refine(table, best, height)
+    assert best[b.PEAK, 0] == pytest.approx(5.0 + 1e-6, rel=2e-11)
+    assert best[b.PEAK_X, 0] == pytest.approx(side * places[higher], abs=1e-4)
 
 
 @pytest.mark.parametrize("place", [-0.7, -0.1, 0.3, 0.8])

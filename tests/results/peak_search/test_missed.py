@@ -39,6 +39,7 @@ def test_a_peak_at_once_after_the_start_of_a_piece_is_found():
         ("four-bar with a function", 0, 450_000, 5741),  # a top between four samples that fall
         ("four-bar with a function", 1_000_029, 0, 9250),  # between two of few samples
         ("slider-crank with friction and a table", 1_000_072, 0, 5953),  # as the one before it
+        ("slider-crank with friction and a table", 20_000_090, 0, 8261),  # two tops in one bracket, the trials in a dip
         ("Watt six-bar", 0, 220_000, 9453),  # a near-toggle just beyond the end of a half turn
         ("Watt six-bar", 0, 400_000, 1148),  # two near-toggles, 7° apart, of which the samples show one
         ("Watt six-bar", 0, 440_000, 4866),  # two near-toggles between two samples
