@@ -14,13 +14,13 @@ from linksweep.analysis.design.sensitivities import sensitivities
 from linksweep.analysis.design.tolerance import tolerance
 from linksweep.analysis.drive.duty import duty
 from linksweep.analysis.drive.flywheel import flywheel
+from linksweep.analysis.drive.in_time.run_down import run_down
+from linksweep.analysis.drive.in_time.run_up import run_up
 from linksweep.analysis.drive.motor_load import motor_load
 from linksweep.analysis.drive.motors.curve import Motor
 from linksweep.analysis.drive.motors.direct_current import DCMotor
 from linksweep.analysis.drive.motors.governed import GovernedMotor
 from linksweep.analysis.drive.motors.induction import InductionMotor
-from linksweep.analysis.drive.run_down import run_down
-from linksweep.analysis.drive.run_up import run_up
 from linksweep.analysis.drive.steady_cycle import steady_cycle
 from linksweep.analysis.pins.bearing import Bearing
 from linksweep.analysis.pins.bearings import bearings, load_spectrum

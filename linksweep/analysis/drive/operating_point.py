@@ -13,8 +13,8 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
-from linksweep.analysis.drive.motion_in_time import AT_REST
-from linksweep.analysis.drive.runs import Designs
+from linksweep.analysis.drive.in_time.motion_in_time import AT_REST
+from linksweep.analysis.drive.in_time.runs import Designs
 from linksweep.results.peaks import peaks
 from linksweep.scene.pairs import Array
 

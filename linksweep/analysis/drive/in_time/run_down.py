@@ -1,6 +1,6 @@
 """Run-down of a machine whose motor is switched off: how long and how far its crank still turns.
 
-Equations: `linksweep.analysis.drive.motion_in_time`.
+Equations: `linksweep.analysis.drive.in_time.motion_in_time`.
 """
 
 from __future__ import annotations
@@ -9,14 +9,14 @@ import numpy as np
 import xarray as xr
 
 from linksweep.analysis.drive.drive_train import drive_train
-from linksweep.analysis.drive.motion_in_time import LASTS, REACHED, SETTLES, Run
+from linksweep.analysis.drive.in_time.motion_in_time import LASTS, REACHED, SETTLES, Run
+from linksweep.analysis.drive.in_time.runs import Designs, Names, checked, described, turned
+from linksweep.analysis.drive.in_time.time_steps import GIVEN_UP
 from linksweep.analysis.drive.motors.direct_current import DCMotor
 from linksweep.analysis.drive.motors.motor import AnyMotor
-from linksweep.analysis.drive.runs import Designs, Names, checked, described, turned
 from linksweep.base.checked_number import one_number
 from linksweep.base.validate import Number, Rule, quote, refuse
 from linksweep.engine.threads import limits_threads
-from linksweep.engine.time_steps import GIVEN_UP
 from linksweep.results.compute import require
 from linksweep.scene.designs.lazy import in_memory
 from linksweep.scene.scene import Scene

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from linksweep.analysis.drive.motion_in_time import ANGLE, SPEED, Run
+from linksweep.analysis.drive.in_time.motion_in_time import ANGLE, SPEED, Run
 from linksweep.scene.pairs import Array, by_row
 
 PLACES = 12

@@ -1,6 +1,6 @@
 """Run-up of a machine from rest on its motor: how long it takes, how hot the motor gets, how hard its pins are loaded.
 
-Equations: `linksweep.analysis.drive.motion_in_time`.
+Equations: `linksweep.analysis.drive.in_time.motion_in_time`.
 """
 
 from __future__ import annotations
@@ -9,14 +9,14 @@ import numpy as np
 import xarray as xr
 
 from linksweep.analysis.drive.drive_train import drive_train
-from linksweep.analysis.drive.motion_in_time import LASTS, NOT_STARTED, REACHED, SETTLES, STOPS, Run
+from linksweep.analysis.drive.in_time.motion_in_time import LASTS, NOT_STARTED, REACHED, SETTLES, STOPS, Run
+from linksweep.analysis.drive.in_time.runs import Designs, Names, checked, described, fed, turned
+from linksweep.analysis.drive.in_time.time_steps import GIVEN_UP
 from linksweep.analysis.drive.motors.motor import AnyMotor
 from linksweep.analysis.drive.operating_point import operating_speed
-from linksweep.analysis.drive.runs import Designs, Names, checked, described, fed, turned
 from linksweep.base.checked_number import one_number
 from linksweep.base.validate import Number, Rule
 from linksweep.engine.threads import limits_threads
-from linksweep.engine.time_steps import GIVEN_UP
 from linksweep.results.compute import require
 from linksweep.scene.designs.lazy import in_memory
 from linksweep.scene.scene import Scene

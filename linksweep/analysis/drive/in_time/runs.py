@@ -11,9 +11,9 @@ import numpy as np
 import xarray as xr
 
 from linksweep.analysis.drive.drive_train import DriveTrain, lost_part
-from linksweep.analysis.drive.motion_in_time import ANGLE, HEAT, LOSS, SPEED, WORK, Crank, Drive, Run
+from linksweep.analysis.drive.in_time.motion_in_time import ANGLE, HEAT, LOSS, SPEED, WORK, Crank, Drive, Run
+from linksweep.analysis.drive.in_time.peaks_in_time import peaks_in_time
 from linksweep.analysis.drive.motors.motor import AnyMotor
-from linksweep.analysis.drive.peaks_in_time import peaks_in_time
 from linksweep.base.checked_number import checked_number, one_number
 from linksweep.base.fields import declared
 from linksweep.base.frozen import with_sound

@@ -23,7 +23,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from linksweep.engine.time_steps import GIVEN_UP, GOES_ON, LANDING, ROUNDING, Level, Systems, Trace
+from linksweep.analysis.drive.in_time.time_steps import GIVEN_UP, GOES_ON, LANDING, ROUNDING, Level, Systems, Trace
 from linksweep.results.peak_search.groups import all_at_once
 from linksweep.results.peak_search.paths import ASIDE, both_sides, listed_jumps, thinned
 from linksweep.scene.pairs import Array, Pairs, in_order, in_period
