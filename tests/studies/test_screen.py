@@ -84,6 +84,7 @@ def test_a_design_is_the_same_alone_and_with_others():
         ((LENGTHS, [0.5]), "designs = [0.5]: must be numbers"),
         (({"coupler.lenth": (0.2, 0.3)}, [1]), "parameters: nothing is named 'coupler.lenth'"),
         (({}, [1]), "parameters = {}: must name what varies"),
+        (({"omega2": scipy.stats.norm(5.0, [1.0, 2.0])}, [1, 2]), "omega2: a distribution of shape (2,): must have"),
     ],
 )
 def test_what_cannot_be_drawn_is_refused(arguments, message):

@@ -146,6 +146,8 @@ def quantiles(choice: Any, levels: np.ndarray, kind: str) -> np.ndarray:
             f"{quote(choice)}: must be a range (low, high), a list of values, ls.Normal, ls.Tolerance, or a frozen "
             "distribution of scipy.stats"
         )
+    if shape := np.shape(of_scipy(0.5)):
+        raise ValueError(f"a distribution of shape {shape}: must have one number for each of its parameters, no array")
     return np.asarray(of_scipy(levels), dtype=float)
 
 
