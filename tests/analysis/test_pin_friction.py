@@ -75,6 +75,19 @@ def test_efficiency_of_the_engine():
         assert 0.8 < arrives / gas < 1.0
 
 
+def test_cylinders_that_change_their_length_feed_and_return_energy_too():
+    """An excavator's three, of which one is the drive: 1 less the friction loss over all that is fed."""
+    digger, count = ls.example("excavator"), 60
+    pins = dict.fromkeys("ACHI", ls.Bearing(diameter=0.1, friction=0.2))
+    of = ["power", "force_c2", "rate_c2", "force_c3", "rate_c3"]
+    cycle, free = ls.pin_friction(digger, pins, theta2=count, of=of), ls.sweep(digger, count, of=["load_power"])
+    powers = [cycle.power, cycle.force_c2 * cycle.rate_c2, cycle.force_c3 * cycle.rate_c3, free.load_power]
+    energies = [float(power.mean()) for power in powers]
+    lost = float(cycle.friction_loss.sum("pin").mean())
+    assert sum(energies) == pytest.approx(lost, rel=0.01)
+    assert float(cycle.efficiency) == pytest.approx(1.0 - lost / sum(max(one, 0.0) for one in energies), rel=1e-9)
+
+
 def test_zero_friction_changes_no_bit():
     cycle = ls.pin_friction(PRESS, {"A": ls.Bearing(diameter=0.02, friction=1e-300)}, theta2=36)
     without = ls.sweep(PRESS, theta2=36)

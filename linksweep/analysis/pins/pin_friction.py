@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
+from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
@@ -22,6 +23,7 @@ from linksweep.analysis.pins.bearing import Bearing, checked_pins
 from linksweep.base.validate import Number, count_problems, refuse
 from linksweep.chains.between_links import force_name
 from linksweep.engine.threads import limits_threads
+from linksweep.mechanisms.machine import Machine
 from linksweep.physics.bearing import friction_circle
 from linksweep.results.compute import require_one_branch
 from linksweep.results.dataset import flags, joined, require_own_names, with_units
@@ -83,8 +85,8 @@ def pin_friction(
         - `friction_loss` (…, pin, theta2) [W], never negative
         - `convergence` (…, theta2): converged or not_converged; where not converged, friction in the pins locks the
           machine or nearly does, and forces and torques are NaN
-        - `efficiency` (…) [1]: part of the energy fed in a cycle that is returned at the drive or at the loads; all
-          friction counts as lost, in a guide too.
+        - `efficiency` (…) [1]: part of the energy fed in a cycle, by the drive, by cylinders that change their length
+          or by loads, that is returned at the others; all friction counts as lost, in a guide too.
 
     Raises
     ------
@@ -187,12 +189,20 @@ def _largest(arrays: Iterable[xr.DataArray]) -> xr.DataArray:
 
 
 def _efficiency(scene: Scene, loss: xr.DataArray, theta2: int) -> xr.DataArray:
-    """Return the efficiency by energies over time: a sample stands for the time that the crank takes to the next."""
+    """Return the efficiency by energies over time: a sample stands for the time that the crank takes to the next.
+
+    What the drive, the cylinders that change their length and the loads feed over the cycle is lost in all.
+    """
     names = [name for name in ("power", "omega2", "friction_power") if name in scene.table.quantity]
-    cycle = sweep(scene, theta2, of=names)
+    struts = scene.mechanism.topology.struts if isinstance(scene.mechanism, Machine) else ()
+    cylinders = [(f"force_{role}", f"rate_{role}") for role in struts]
+    cycle = sweep(scene, theta2, of=[*names, *chain.from_iterable(cylinders)])
+    pushed = [cycle[force] * cycle[rate] for force, rate in cylinders]
+    powers = [loss - cycle.get("friction_power", 0.0), cycle["power"], *pushed]
     with np.errstate(divide="ignore", invalid="ignore"):  # of a machine that stands still
-        powers = (power / abs(cycle["omega2"]) for power in (loss - cycle.get("friction_power", 0.0), cycle["power"]))
-        lost, fed = (power.broadcast_like(cycle["theta2"]).sum("theta2", skipna=False) for power in powers)
-        driven = ((fed - lost) / fed).clip(min=0.0)
+        over_time = ((power / abs(cycle["omega2"])).broadcast_like(cycle["theta2"]) for power in powers)
+        lost, *driven = (power.sum("theta2", skipna=False) for power in over_time)
+        fed = sum(energy.clip(min=0.0) for energy in (*driven, lost - sum(driven)))
+        efficiency = ((fed - lost) / fed).clip(min=0.0)
     attributes = {"units": "1", "long_name": "energy that comes out of the machine in a cycle over the energy fed"}
-    return xr.where(fed > 0.0, driven, fed / (fed - lost)).assign_attrs(attributes)
+    return efficiency.assign_attrs(attributes)
