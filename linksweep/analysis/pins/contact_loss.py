@@ -24,6 +24,7 @@ comparison of criteria.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -39,8 +40,11 @@ from linksweep.scene.designs.lazy import in_memory
 from linksweep.scene.dimensions import argument_problems
 from linksweep.scene.scene import Scene
 
-STEP = 0.02
-"""Distance of the angles between which forces are subtracted [degree]."""
+STEPS = tuple(0.02 * 0.1**k for k in range(6))
+"""Distances of the angles between which forces are subtracted [degree]: the first that is small beside the way to an
+angle that is not ok, where forces may grow without bound."""
+REACH = 50.0
+"""Least way to such an angle, in steps."""
 CLEARANCE = Rule("length", above=0.0)
 STENCIL = {-2.0: 1.0 / 12.0, -1.0: -2.0 / 3.0, 1.0: 2.0 / 3.0, 2.0: -1.0 / 12.0}
 """Weights of the differences, of fourth order."""
@@ -87,8 +91,9 @@ def contact_loss(
 
     Notes
     -----
-    Forces are those without clearance. They are differentiated over 0.04 degrees on either side: a jump of a load
-    within counts as a turn. Equations and sources: `linksweep.analysis.pins.contact_loss`.
+    Forces are those without clearance. They are differentiated over 0.04 degrees on either side, over less within a
+    degree of an angle that is not ok: a jump of a load within counts as a turn. Where a force vanishes, its rates are
+    NaN. Equations and sources: `linksweep.analysis.pins.contact_loss`.
 
     Examples
     --------
@@ -125,13 +130,28 @@ TEXTS = {
 
 def _slopes(scene: Scene, cycle: xr.Dataset, names: list[str]) -> xr.Dataset:
     """Return the derivatives of forces to the crank's angle [N/rad]."""
-    index = scene.mechanism.index
-    angles = cycle[index].values
+    slopes = _differences(scene, cycle, names, STEPS[0])
+    for step, closer in pairwise(STEPS):
+        ends = [_beside(scene, cycle, way * step, []).status != 0 for way in (-REACH, REACH)]
+        near = (cycle["status"] == 0) & (ends[0] | ends[1])
+        if not near.any():
+            break
+        slopes = slopes.where(~near, _differences(scene, cycle, names, closer))
+    return slopes
+
+
+def _differences(scene: Scene, cycle: xr.Dataset, names: list[str], step: float) -> xr.Dataset:
     total: Any = 0.0
     for steps, weight in STENCIL.items():
-        beside = sweep(scene, angles + steps * STEP, of=names)[names]
-        total = total + weight * beside.assign_coords({index: angles})
-    return total / np.radians(STEP)
+        total = total + weight * _beside(scene, cycle, steps * step, names)[names]
+    return total / np.radians(step)
+
+
+def _beside(scene: Scene, cycle: xr.Dataset, aside: float, names: list[str]) -> xr.Dataset:
+    """Return quantities at angles beside those of a cycle [degree], under its labels."""
+    index = scene.mechanism.index
+    angles = cycle[index].values
+    return sweep(scene, angles + aside, of=names).assign_coords({index: angles})
 
 
 def _of_pin(cycle: xr.Dataset, slopes: xr.Dataset, force: str) -> dict[str, Any]:

@@ -257,6 +257,21 @@ def test_the_force_of_a_turning_bar_turns_with_it():
     assert np.allclose(ds.turning_per_force, 2.0 / (mass * 50.0 * 0.3), rtol=1e-9)
 
 
+@pytest.mark.parametrize("beside", [0.3, 0.045, 1e-3, 1e-4])
+def test_forces_turn_faster_towards_the_end_of_an_arc(beside):
+    """A little further on the machine does not close; the rate is that of the angle between two forces close by."""
+    press = ls.example("press")
+    half = replace(press, mechanism=replace(press.mechanism, ground=0.45))
+    in_line = (0.08**2 + 0.45**2 - (0.22 + 0.18) ** 2) / (2.0 * 0.08 * 0.45)  # coupler and rocker
+    angle, step = np.degrees(np.arccos(in_line)) - beside, 1e-3 * beside
+    around = ls.sweep(half, [angle - step, angle + step], of=["F43x", "F43y"])
+    before, after = np.arctan2(around.F43y, around.F43x).values
+    expected = (after - before) / np.radians(2.0 * step) * press.omega2
+    ds = ls.contact_loss(half, {"C": 5e-5}, theta2=[angle])
+    assert (ds.status == 0).all()
+    assert float(ds.turning_rate.sel(pin="C")[0]) == pytest.approx(expected, rel=1e-4)
+
+
 def test_the_tube_and_the_bar_have_the_moments_of_their_shapes():
     tube, rod = ls.Tube(0.03, inner=0.02), ls.Tube(0.03)
     assert tube.second_moment == pytest.approx(np.pi / 64 * (0.03**4 - 0.02**4), rel=1e-14)
