@@ -80,7 +80,7 @@ def contact_loss(
         - `turning_per_force` [rad/N/s], the measure of Earles and Wu: contact is lost where it exceeds a threshold,
           which is quoted as 5 for their four-bars, and belongs to machines of that size
         - `knock` [1] with a clearance: the part of the force that it takes to keep the journal on its circle; contact
-          is lost where it exceeds 1, inf where the force vanishes
+          is lost where it exceeds 1, inf where the force vanishes; NaN of a pin whose clearance is not given
         - `status` as in `linksweep.sweep`.
 
     Raises
@@ -171,4 +171,4 @@ def _knock(scene: Scene, pair: tuple[int, int], gap: Number, part: Mapping[str, 
     first, second = (masses.get(k, np.inf) for k in pair)  # the ground, and a block without mass of its own
     with np.errstate(divide="ignore", invalid="ignore"):
         moved = 1.0 / (1.0 / xr.DataArray(first) + 1.0 / xr.DataArray(second))
-        return (moved * gap * part["turning_rate"] ** 2 / part["F"]).where(part["F"] != 0.0, np.inf)
+        return (moved * gap * part["turning_rate"] ** 2 / part["F"]).where((part["F"] != 0.0) | np.isnan(gap), np.inf)

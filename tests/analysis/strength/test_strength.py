@@ -272,6 +272,15 @@ def test_forces_turn_faster_towards_the_end_of_an_arc(beside):
     assert float(ds.turning_rate.sel(pin="C")[0]) == pytest.approx(expected, rel=1e-4)
 
 
+def test_a_pin_without_a_clearance_knocks_nowhere():
+    """Also where its force vanishes."""
+    light = ls.Bar(0.2, **THREAD)
+    scene = ls.Scene(ls.FourBar(light, replace(light, length=0.3), replace(light, length=0.3), ground=0.25), omega2=9.0)
+    knock = ls.contact_loss(scene, {"B": 5e-5}, theta2=4).knock
+    assert np.isinf(knock.sel(pin="B")).all()
+    assert knock.sel(pin=["A", "C", "D"]).isnull().all()
+
+
 def test_the_tube_and_the_bar_have_the_moments_of_their_shapes():
     tube, rod = ls.Tube(0.03, inner=0.02), ls.Tube(0.03)
     assert tube.second_moment == pytest.approx(np.pi / 64 * (0.03**4 - 0.02**4), rel=1e-14)
