@@ -1,5 +1,7 @@
 """Analyses of a linkage whose cylinder's length, a function of theta2, gives its rod a known angle."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -59,6 +61,26 @@ def test_derivatives_and_tolerances_of_the_travel(scene):
     assert slopes.theta3_travel_derivative.item() == pytest.approx(expected, rel=1e-9)
     spread = ls.tolerance(scene, {"rod.length": ls.Normal(deviation=1e-6)}, of=TRAVEL, n=0)
     assert spread.theta3_travel_sigma.item() == pytest.approx(1e-6 * abs(expected), rel=1e-9)
+
+
+@pytest.mark.parametrize("path", ["rod.mass", "rod.length", "crank.length"])
+def test_derivatives_of_peaks(scene, path):
+    """The peaks lie where forces of inertia turn round: their change over the angle has the length's third derivative.
+
+    Expected are differences of the peaks of changed machines, extrapolated.
+    """
+    role, _, field = path.partition(".")
+    part = getattr(scene.mechanism, role)
+
+    def peak(change):
+        changed = replace(part, **{field: getattr(part, field) + change})
+        machine = replace(scene.mechanism, **{role: changed})
+        return float(ls.peaks(replace(scene, mechanism=machine), of=["F12"]).F12_peak)
+
+    wide, narrow = ((peak(h) - peak(-h)) / (2.0 * h) for h in (2e-3, 1e-3))
+    slopes = ls.sensitivities(scene, of=["F12_peak"], to=[path])
+    assert int(slopes.F12_peak_status) == 0
+    assert slopes.F12_peak_derivative.item() == pytest.approx((4.0 * narrow - wide) / 3.0, rel=1e-6)
 
 
 def test_report(scene, tmp_path):

@@ -26,6 +26,7 @@ from linksweep.engine.trace.derivatives import derivative_of, with_derivatives
 from linksweep.engine.trace.plan import plan
 from linksweep.mechanisms import Mechanism
 from linksweep.mechanisms.strokes import Stroke
+from linksweep.scene.curves.derivatives import third_derivative
 from linksweep.scene.curves.derivatives import with_derivatives as curve_with_derivatives
 from linksweep.scene.curves.over_position import POSITION
 from linksweep.scene.derivatives.sloped import Sloped, slopes_of, value_of, where
@@ -293,9 +294,11 @@ class SlopedRevolution(Revolution):
     def sample_length(self, path: str, length: Any) -> tuple[Number, Number, Number]:
         """Return a length that changes with theta2 at the angles, and its derivatives [m/rad, m/rad²]."""
         value, slope, curvature = self._over_angle(path, length, LENGTH)
-        array = self.original.curves.get(path)
-        third = 0.0 if array is None else array.slope(self.grid, 3, self.places).variable
-        return self._turned(value, slope), self._turned(slope, curvature), self._turned(curvature, third)
+        if ANGLE not in self.original.to:
+            return value, slope, curvature
+        curve, turn = self.original.curves.get(path), self.mechanism.period
+        third = third_derivative(path, length, LENGTH, self.grid, turn, curve, self.places)
+        return self._turned(value, slope), self._turned(slope, curvature), self._turned(curvature, value_of(third))
 
     def stroke(self, name: str, stroke_of: Callable[[Scene, str], Stroke]) -> Stroke:
         """Return the stroke of a position by its name, its constants with slopes."""
