@@ -105,7 +105,7 @@ def _motion_of(alone: Scene, stroke: Stroke) -> Motion:
     names, period = (stroke.quantity, stroke.slope), alone.period
     designs = different_designs(alone, names)
     loops = plan(alone.table, names, alone.at_one_angle.inputs.forms).loops
-    sizes = {dim: size for dim, size in alone.inputs.sizes.items() if dim in loops}
+    sizes = {dim: size for dim, size in alone.at_one_angle.inputs.sizes.items() if dim in loops}
 
     def at(row: Array, angle: Array) -> Array:
         return quantities_at(alone, names, designs[row], angle)

@@ -327,7 +327,7 @@ class SlopedRevolution(Revolution):
         """Return the largest value of a stroke's quantity, with its slopes at the crank angle where it turns round; NaN
         where it is largest at an end of the motion, where slopes are infinite."""
         alone = self._alone((stroke.quantity,))
-        sizes = alone.inputs.sizes
+        sizes = alone.at_one_angle.inputs.sizes
         designs, dims = np.arange(math.prod(sizes.values())), tuple(sizes)
         shape = tuple(sizes.values())
 

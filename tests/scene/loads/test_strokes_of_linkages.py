@@ -106,6 +106,56 @@ def test_a_cylinder_as_a_linkage():
     np.testing.assert_allclose(sorted(jumps), [0.0, 180.0], atol=1e-12)
 
 
+def length(theta2):
+    return 0.14 + 0.01 * np.sin(np.radians(theta2))
+
+
+ALL_ROUND = np.arange(0.0, 360.0, 0.25)
+TABLE = xr.DataArray(length(ALL_ROUND), {"theta2": ALL_ROUND}, "theta2")
+
+
+def pushed_by_a_cylinder(of_cylinder, crank, load):
+    machine = ls.Linkage(
+        "crank A-B, rod B~C, slider C on slide",
+        ground={"A": (0.0, 0.0)},
+        guides={"slide": ls.Guide()},
+        crank=replace(CRANK, length=crank),
+        rod=ls.Cylinder(of_cylinder),
+        slider=ls.Slider(0.5),
+    )
+    return ls.Scene(machine, 10.0, loads=[load])
+
+
+@pytest.mark.parametrize("of_cylinder", [length, TABLE], ids=["function", "table"])
+def test_a_slider_that_a_cylinder_of_changing_length_pushes(of_cylinder):
+    """Beside the slider-crank's own equation with a rod of the length l(θ2)."""
+
+    def place(theta2):
+        angle = np.radians(theta2)
+        return 0.04 * np.cos(angle) + np.sqrt(length(theta2) ** 2 - (0.04 * np.sin(angle)) ** 2)
+
+    scene = pushed_by_a_cylinder(of_cylinder, 0.04, push(interpolation="linear"))
+    theta2 = np.arange(3.3, 360.0, 7.0)
+    force = ls.sweep(scene, theta2, of=["T12"])["loads[1].force[1]"].values
+    away = place(np.arange(0.0, 360.0, 0.01)).max() - place(theta2)
+    closing = place(theta2 + 1e-4) > place(theta2)
+    np.testing.assert_allclose(force, np.where(closing, np.interp(away, [0.0, 0.012], [-50e3, 0.0]), 0.0), atol=0.01)
+    assert np.any(force) and not np.all(force)
+
+
+@pytest.mark.parametrize("of_cylinder", [length, TABLE], ids=["function", "table"])
+def test_derivatives_where_a_cylinder_of_changing_length_pushes(of_cylinder):
+    """Expected are differences of the peaks of changed machines, extrapolated."""
+    load = push(force=PUSH.assign_coords(position=[0.0, 0.2]), while_=None, interpolation="linear")
+
+    def peak(crank):
+        return float(ls.peaks(pushed_by_a_cylinder(of_cylinder, crank, load), of=["T12"]).T12_max)
+
+    wide, narrow = ((peak(0.04 + h) - peak(0.04 - h)) / (2.0 * h) for h in (2e-4, 1e-4))
+    slopes = ls.sensitivities(pushed_by_a_cylinder(of_cylinder, 0.04, load), of=["T12_max"], to=["crank.length"])
+    assert slopes.T12_max_derivative.item() == pytest.approx((4.0 * narrow - wide) / 3.0, rel=1e-6)
+
+
 # ---- a press of six bars
 
 
