@@ -9,7 +9,7 @@ strength, that of a polished specimen in rotating bending (Shigley, chapter on f
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from linksweep.base.checked_number import unit_attribute_problems
 from linksweep.base.equality import ByContent
@@ -63,17 +63,22 @@ class Material(ByContent):
         refuse(unit_attribute_problems(numbers(self)))
 
 
-STRENGTHS = {  # E, yield strength, tensile strength, endurance or fatigue strength; in MPa
+STEELS = {  # E, yield strength, tensile strength, endurance or fatigue strength; in MPa
     "S235": (210e3, 235.0, 360.0, 180.0),
     "S275": (210e3, 275.0, 430.0, 215.0),
     "S355": (210e3, 355.0, 490.0, 245.0),
     "AISI 1020 HR": (207e3, 210.0, 380.0, 190.0),
     "AISI 1045 CD": (207e3, 530.0, 630.0, 315.0),
     "AISI 4140 QT 540": (207e3, 834.0, 951.0, 475.5),
+}
+ALUMINIUM = {
     "2024-T4": (73.1e3, 324.0, 469.0, 138.0),
     "6061-T6": (68.9e3, 276.0, 310.0, 96.5),
     "7075-T6": (71.7e3, 503.0, 572.0, 159.0),
 }
+STRENGTHS = STEELS | ALUMINIUM
+ALUMINIUM_KNEE = 5e8
+"""Number of cycles of the fatigue strength of aluminium."""
 
 
 def material(name: str) -> Material:
@@ -88,7 +93,8 @@ def material(name: str) -> Material:
     Returns
     -------
     Material
-        Material, whose endurance limit is that of a polished specimen.
+        Material, whose endurance limit is that of a polished specimen; of aluminium it is reached after 5e8 cycles, its
+        `knee`.
 
     Raises
     ------
@@ -106,4 +112,5 @@ def material(name: str) -> Material:
     Material(E=210000000000.0, yield_strength=355000000.0, tensile_strength=490000000.0, endurance=245000000.0)
     """
     refuse(choice_problems("name", name, STRENGTHS))
-    return Material(*(1e6 * number for number in STRENGTHS[name]))
+    metal = Material(*(1e6 * number for number in STRENGTHS[name]))
+    return replace(metal, knee=ALUMINIUM_KNEE) if name in ALUMINIUM else metal

@@ -24,6 +24,7 @@ def test_named_materials_are_those_of_tables_in_ksi(name, tensile, strength, fat
     assert material.yield_strength == pytest.approx(KSI * strength, rel=2e-2)  # tables in MPa are rounded to 10
     expected = 0.5 * material.tensile_strength if fatigue is None else KSI * fatigue
     assert material.endurance == pytest.approx(expected, rel=5e-3)
+    assert material.knee == (1e6 if fatigue is None else 5e8)
 
 
 @pytest.mark.parametrize(("name", "strengths"), {"S235": (235, 360), "S275": (275, 430), "S355": (355, 490)}.items())
