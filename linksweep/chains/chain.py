@@ -65,9 +65,8 @@ class Chain:
     def drives(self) -> dict[str, str]:
         """Unknown torque of each link that turns about a ground pin, or force of each cylinder that follows."""
         joined = self.topology
-        on_ground = [role for role in joined.links if {*joined.links[role]} & {*joined.ground}]
         follow = [role for role in joined.cylinders if role not in joined.struts]
-        torques = {role: name_between("T", 1, joined.number(role)) for role in on_ground}
+        torques = {role: name_between("T", 1, joined.number(role)) for role in joined.on_ground}
         return torques | {role: f"force_{role}" for role in follow}
 
     def drive(self, name: str) -> Drive:

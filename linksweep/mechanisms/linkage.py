@@ -231,10 +231,9 @@ class Linkage(Machine):
                 strokes[f"{role}.position"] = Stroke(x, v, "length", OF_BLOCK)
         for role in joined.cylinders:
             strokes[f"{role}.length"] = Stroke(f"length_{role}", f"rate_{role}", "length", OF_BLOCK)
-        for body in self.bodies[1:]:
-            if body.on_ground and body.role in joined.links:
-                k = body.number
-                strokes[f"{body.role}.angle"] = Stroke(f"theta{k}", f"omega{k}", "angle", OF_LINK)
+        for role in self.on_ground[1:]:
+            k = joined.number(role)
+            strokes[f"{role}.angle"] = Stroke(f"theta{k}", f"omega{k}", "angle", OF_LINK)
         return strokes
 
     @property

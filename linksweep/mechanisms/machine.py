@@ -53,6 +53,10 @@ class Machine(Mechanism):
         return tuple(role for role, (_, guide) in joined.on_guides.items() if joined.hosts[guide] == GROUND)
 
     @property
+    def on_ground(self) -> tuple[str, ...]:  # type: ignore[override]
+        return self.topology.on_ground
+
+    @property
     def pins(self) -> Pins:  # type: ignore[override]
         return self.topology.pins
 

@@ -73,6 +73,8 @@ class Mechanism(ByContent, ABC):
     """Roles of the moving links, on which loads may act."""
     sliders: ClassVar[tuple[str, ...]] = ()
     """Roles of the links that slide on the ground; one number is a force along their guide."""
+    on_ground: ClassVar[tuple[str, ...]] = ()
+    """Roles of the links that turn about a ground pin."""
     pins: ClassVar[Pins] = {}
     """Numbers of the two links of each pin, by its letter."""
     journals: ClassVar[Journals] = {}

@@ -87,8 +87,8 @@ def best_counterweights(
         0.2}: of a quantity its `_peak` (largest magnitude), `_rms` over time, or `_ripple` (root mean square about its
         mean).
     radius : float or mapping
-        Distance of the counterweights from their pins [m]: one number for all links on ground pins, or one for each
-        link that may have one, {"crank": 0.05}.
+        Distance of the counterweights from the first pins of their links [m]: one number for all links whose first pin
+        is on the ground, or one for each link that may have one, {"crank": 0.05}.
     most : float or mapping, default None
         Largest mass [kg], of all of these links or of each; None for no limit.
     theta2 : int, default 720

@@ -136,7 +136,8 @@ def _positions(scene: Scene, of: Any) -> list[str]:
     maker = scene.table.maker
     known = [name for name, q in scene.table.quantity.items() if q.units in TRAVEL_UNITS and rate_of(name) in maker]
     if of is None:
-        rockers = [f"theta{body.number}" for body in scene.mechanism.bodies if body.on_ground]
+        machine = scene.mechanism
+        rockers = [f"theta{body.number}" for body in machine.bodies if body.role in machine.on_ground]
         return [name for name in known if name in rockers or name.startswith("x_")]
     names = requested("of", of)
     refuse([problem for name in names for problem in quantity_problems("of", name, known, scene)])
@@ -228,8 +229,9 @@ def coupler_curve(
 
 def _floating(scene: Scene) -> str:
     """Return the first link, among the parts of the machine, that no ground pin holds; else the last of all links."""
-    parts = [body for body in scene.mechanism.bodies if body.role in scene.mechanism.parts]
-    return next((body.role for body in parts if not body.on_ground), scene.mechanism.bodies[-1].role)
+    machine = scene.mechanism
+    floating = (b.role for b in machine.bodies if b.role in machine.parts and b.role not in machine.on_ground)
+    return next(floating, machine.bodies[-1].role)
 
 
 def _numbers(scene: Scene, theta2: Any, sources: tuple[Any, ...]) -> list[Any]:

@@ -45,6 +45,11 @@ class Topology:
     def crank(self) -> str:
         return self.names[0]
 
+    @property
+    def on_ground(self) -> tuple[str, ...]:
+        """Links that turn about a ground pin, whichever of their pins that is; the crank first."""
+        return tuple(role for role, pins in self.links.items() if {*pins} & {*self.ground})
+
     @cached_property
     def roles(self) -> tuple[str, ...]:
         """Moving links with a number, in the order of the text: all but cylinders."""

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import xarray as xr
 from long import long_but
 from random_linkages import swept
 
@@ -148,3 +149,32 @@ def test_the_position_on_an_arm_counts_from_its_known_pin(pins):
     ahead = (from_J / polar(1.0, cycle.theta3.values + guide.angle)).real
     assert (ahead > 0.0).all()
     np.testing.assert_allclose(cycle.x_arm, ahead, rtol=1e-12)
+
+
+# ---- links that turn about a ground pin, whichever of their pins that is
+
+
+@pytest.mark.parametrize("pins", ["C-D-E", "E-C-D"])
+def test_travel_of_links_whose_first_pin_is_not_the_one_on_the_ground(pins):
+    expected, motion = ls.geometry(watt()), ls.geometry(turned(turned(watt(), "rocker", pins), "output", "F-G"))
+    for name in ("theta4_travel", "theta6_travel"):
+        assert float(motion[name]) == pytest.approx(float(expected[name]), rel=1e-12)
+
+
+def test_a_load_over_the_angle_of_a_link_whose_second_pin_is_on_the_ground():
+    """From F to G the angle is that from G to F, turned by 180 degrees."""
+    angles = ls.sweep(watt(), 720, of=["theta6"]).theta6
+    table = xr.DataArray([-20.0, 30.0], {"position": [float(angles.min()), float(angles.max())]}, "position")
+    assert float(angles.max()) < 0.0  # so that the other angle, larger by 180 degrees, stays below 180
+    over = {"over": "output.angle", "while_": "clockwise", "interpolation": "linear"}
+    scene = replace(watt(), loads=[ls.Load("output", torque=table, **over)])
+    opposite = table.assign_coords(position=table.position + 180.0)
+    other = replace(turned(watt(), "output", "F-G"), loads=[ls.Load("output", torque=opposite, **over)])
+    expected, torque = (ls.sweep(each, 360, of=["T12"]).T12 for each in (scene, other))
+    np.testing.assert_allclose(torque, expected, rtol=0.0, atol=1e-11 * float(abs(expected).max()))
+
+
+def test_the_curve_is_drawn_by_the_first_link_that_no_ground_pin_holds():
+    scene = reordered(turned(watt(), "rocker", "C-D-E"), ("rocker", "coupler", "rod", "output"))
+    curve, named = (ls.coupler_curve(scene, (0.1, 15.0), theta2=8, **link) for link in ({}, {"link": "coupler"}))
+    np.testing.assert_array_equal(curve.Px, named.Px)
