@@ -95,6 +95,15 @@ def test_the_spectrum_holds_all_of_the_rotation():
     np.testing.assert_allclose(again, bearings.equivalent_load, rtol=1e-3)
 
 
+def test_a_pin_that_stands_still_leaves_the_spectra_of_others():
+    scene = replace(PRESS, omega2=xr.DataArray([0.0, 20.0], dims="speed"))
+    spectra = ls.load_spectrum(ls.bearings(scene, theta2=72), classes=5).share
+    alone = ls.load_spectrum(ls.bearings(ls.scene_at(scene, speed=1), theta2=72), classes=5).share
+    assert (spectra.sel(speed=0) == 0.0).all()
+    np.testing.assert_array_equal(spectra.sel(speed=1), alone)
+    np.testing.assert_allclose(alone.sum("load_class"), 1.0, rtol=1e-12)
+
+
 def test_the_spectrum_of_a_sine_by_its_quarters():
     """F = 1 − cos θ stays below a quarter, a half, three quarters of its largest for 120, 180, 240 degrees."""
     row = loaded(lambda theta2: 1.0 - np.cos(np.radians(theta2)))

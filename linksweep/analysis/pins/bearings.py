@@ -219,6 +219,7 @@ def load_spectrum(ds: xr.Dataset, *, classes: int = 10) -> xr.Dataset:
         *xr.broadcast(ds["F"], ds["rotation_share"]),
         input_core_dims=[["theta2"], ["theta2"]],
         output_core_dims=[["load_class"], []],
+        output_dtypes=[float, float],  # not those of the first, of which no sample may be known
         vectorize=True,
     )
     bounded = ds["life_status"] != UNBOUNDED
