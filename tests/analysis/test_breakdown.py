@@ -220,6 +220,14 @@ def test_a_study_has_a_limit_for_each_design():
         )
 
 
+def test_a_design_that_closes_at_no_angle_has_no_limit_of_speed():
+    scene = ls.Scene(replace(FOUR_BAR, ground=xr.DataArray([0.2, 2.0], dims="span")), 30.0, loads=[push("rocker")])
+    closes = (ls.sweep(scene, of=[]).status == 0).any("theta2")
+    limit = ls.speed_limit(scene, "F43", below=150.0).omega2_limit
+    assert closes.values.tolist() == [True, False]
+    assert np.isfinite(limit[0]) and np.isnan(limit[1])
+
+
 def test_a_massless_machine_has_no_limit_and_an_overloaded_one_no_speed():
     light = [replace(link, mass=0.0, inertia=0.0) for link in (CRANK, ROD, ROCKER)]
     scene = ls.Scene(ls.FourBar(*light, ground=0.2), 30.0, loads=[push("rocker")])

@@ -123,7 +123,8 @@ def speed_limit(scene: Scene, of: str, *, below: float, threads: int | None = No
         Results over the design dims:
 
         - `omega2_limit` [rad/s], not negative: inf where no speed exceeds the limit, NaN where none keeps it, because
-          the force at rest is beyond it and no speed relieves it, or forces grow without bound
+          the force at rest is beyond it and no speed relieves it, or forces grow without bound; NaN of a design that
+          closes at no angle
         - `omega2_limit_at` [degree]: crank angle of the peak at that speed.
 
     Raises
@@ -199,7 +200,8 @@ def _of_samples(scene: Scene, parts: tuple[str, ...], below: float) -> xr.DataAr
     lower, upper = (xr.broadcast(root, ok, scene.omega2)[0] for root in roots)
     least = lower.where(ok, -math.inf).max(index, skipna=False)
     most = upper.where(ok, math.inf).min(index, skipna=False)
-    return most.where((most >= least) & (most >= 0.0)).transpose(*scene.omega2.dims)
+    closes = ok.broadcast_like(lower).any(index)
+    return most.where(closes & (most >= least) & (most >= 0.0)).transpose(*scene.omega2.dims)
 
 
 def _roots(growing: list, standing: list, below: float) -> tuple[Any, Any]:
