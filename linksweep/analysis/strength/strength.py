@@ -1,7 +1,7 @@
 """strength(scene): the worst stress of each link over the exact cycle, and its safety against yield, fatigue, buckling.
 
 Peaks over the cycle are exact at each section. The worst section is sought among 41 and those on either side of third
-pins and loads, then among 2 × 15 more, between the neighbours of the sections worst by stress and by fatigue.
+pins and loads, then among 3 × 15 more, between the neighbours of the sections worst by stress, Goodman and Soderberg.
 """
 
 from __future__ import annotations
