@@ -125,5 +125,6 @@ def _other(manifest_file: Path, manifest: Mapping[str, Any]) -> list[str]:
 
 
 def differing(old: Any, new: Any) -> str:
-    """Return both values that differ, in brackets; nothing for digests."""
-    return "" if len(str(new)) == 64 else f" ({quote(old)}, not {quote(new)})"
+    """Return both values that differ, in brackets; nothing for digests, and where they differ beyond what is shown."""
+    digest = len(str(new)) == 64
+    return "" if digest or quote(old) == quote(new) else f" ({quote(old)}, not {quote(new)})"

@@ -249,6 +249,5 @@ def _result(task: Screening, tally: Tally, n: int, further: list[str]) -> xr.Dat
         }
         first += len(counts)
     command = f"linksweep.screen(scene, parameters, n={n}, seed={task.seed}, of={of})"
-    small, large = ([name for name, sign in task.objectives.items() if sign == each] for each in (1.0, -1.0))
-    chosen_for = objective_attributes(small, large)
+    chosen_for = objective_attributes(task.small, task.large)
     return ds.assign(variables).assign_coords(coordinates).assign_attrs(command=command, **chosen_for)

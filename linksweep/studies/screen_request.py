@@ -102,14 +102,22 @@ def ready(task: Screening, n: int, further: list[str]) -> tuple[Screening, dict[
     values = values_of(pilot, task.names)
     edges = {name: _between(values[name], len(own)) if np.isnan(own[0]) else own for name, own in task.edges.items()}
     words = tuple(str(pilot["status"].attrs["flag_meanings"]).split())
-    request = {
-        "objectives": dict(task.objectives), "limits": {name: list(ends) for name, ends in task.limits.items()},
-        "edges": {name: own.tolist() for name, own in edges.items()}, "keep": task.keep, "of": further,
+    task = replace(task, edges=edges, words=words)
+    return task, _manifest(task, n, further)
+
+
+def _manifest(task: Screening, n: int, further: list[str]) -> dict[str, Any]:
+    """Return what a tally depends on, by argument: names in their order, which is that of its numbers.
+
+    The edges of histograms are last, as they follow from the rest.
+    """
+    designs = draw(task.scene, task.parameters, designs=range(min(n, PILOT)), seed=task.seed)
+    return {
+        "n": n, "seed": task.seed, "scene": scene_digest(designs), "minimize": task.small, "maximize": task.large,
+        "subject_to": [[name, *ends] for name, ends in task.limits.items()], "keep": task.keep, "of": further,
         "options": {word: np.asarray(value).tolist() for word, value in task.options.items()},
+        "bins": [[name, *own.tolist()] for name, own in task.edges.items()], "version": installed_version(),
     }  # fmt: skip
-    designs = draw(task.scene, task.parameters, designs=first, seed=task.seed)
-    manifest = {"n": n, "scene": scene_digest(designs), "request": request, "version": installed_version()}
-    return replace(task, edges=edges, words=words), manifest
 
 
 def _parameter(task: Screening, name: str) -> str:

@@ -47,6 +47,16 @@ class Screening:
         return sum(len(edges) + 1 for edges in self.edges.values())
 
     @property
+    def small(self) -> list[str]:
+        """Names of the objectives that are to be small."""
+        return [name for name, sign in self.objectives.items() if sign > 0.0]
+
+    @property
+    def large(self) -> list[str]:
+        """Names of the objectives that are to be large."""
+        return [name for name, sign in self.objectives.items() if sign < 0.0]
+
+    @property
     def names(self) -> list[str]:
         """Names of all results that the screening looks at."""
         return list(dict.fromkeys([*self.objectives, *self.limits, *self.edges]))

@@ -279,12 +279,19 @@ def test_files_do_not_grow_with_the_designs(tmp_path, monkeypatch):
 def test_files_of_another_screening_are_refused_and_kept(tmp_path, monkeypatch):
     path = tmp_path / "screen.nc"
     screened(path=path)
+    edges = [*range(300, 340)]
+    screened(path=tmp_path / "edges.nc", bins={"F32_peak": edges})
     before = content(tmp_path)
+    message = refused(screened, path=tmp_path / "edges.nc", bins={"F32_peak": [*edges, 350]})
+    assert message.startswith(f"{tmp_path}/edges.nc: is of a screening with another bins; go on with that")
     assert refused(screened, path=path, n=N + 1).startswith(
         f"{path}: is of a screening with another n (1500, not 1501)"
     )
-    assert refused(screened, path=path, keep=3).startswith(f"{path}: is of a screening with another request")
-    assert refused(screened, path=path, seed=1).startswith(f"{path}: is of a screening with another scene; go on with")
+    another = f"{path}: is of a screening with another"
+    assert refused(screened, path=path, keep=3).startswith(f"{another} keep (100, not 3)")
+    assert refused(screened, path=path, seed=1).startswith(f"{another} seed (0, not 1)")
+    assert refused(screened, path=path, theta2=37).startswith(f"{another} options ({{'theta2': 36}}, not ")
+    assert refused(ls.screen, PRESS, LENGTHS, n=N, minimize="F32_peak", path=path).startswith(f"{another} scene; go on")
     assert content(tmp_path) == before
     stopping(monkeypatch, 1)
     with pytest.raises(KeyboardInterrupt):
@@ -293,6 +300,25 @@ def test_files_of_another_screening_are_refused_and_kept(tmp_path, monkeypatch):
     assert refused(screened, path=tmp_path / "new.nc", keep=3).startswith(f"{progress}: is of a screening with another")
     progress.write_bytes(progress.read_bytes()[:-1])
     assert refused(screened, path=tmp_path / "new.nc").startswith(f"{progress}: is damaged, or no file of a screening")
+
+
+@pytest.mark.parametrize(
+    "more",
+    [
+        {"minimize": ["T12_peak", "F32_peak"]},
+        {"subject_to": {"F32_peak": (310.0, 500.0), "T12_max": (None, 20.0)}},
+        {"bins": {"T12_max": [0.0, 20.0], "F32_peak": [300.0, 400.0]}},
+    ],
+)
+def test_a_stopped_screening_does_not_go_on_with_its_names_in_another_order(more, tmp_path, monkeypatch):
+    """The numbers of a tally are in the order of the names: those of one would be added to those of another."""
+    request = {"minimize": ["F32_peak", "T12_peak"], "bins": {"F32_peak": [300.0, 400.0], "T12_max": [0.0, 20.0]}}
+    with monkeypatch.context() as until_then:
+        stopping(until_then, 1)
+        with pytest.raises(KeyboardInterrupt):
+            screened(path=tmp_path / "screen.nc", chunk=700, **request)
+    message = refused(screened, path=tmp_path / "screen.nc", chunk=700, **request | more)
+    assert f"screen.nc.progress: is of a screening with another {next(iter(more))} (" in message
 
 
 # -------------------------------------------------------------------------------------------- refused
