@@ -206,6 +206,12 @@ def test_loads_over_the_angle():
     assert screening.design.item() == peaks.idxmin() and screening.T12_peak.item() == peaks.min()
 
 
+def test_no_scene_is_chosen_of_a_screening_that_kept_no_design():
+    none = screened(subject_to={"F32_peak": (None, 1.0)})
+    with pytest.raises(ValueError, match=r"^design = 0: there are no designs along it: choose from a Dataset that has"):
+        ls.scene_at(none, design=0)
+
+
 # -------------------------------------------------------------------------------------------- files
 
 
