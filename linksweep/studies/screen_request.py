@@ -16,7 +16,7 @@ from linksweep.results.scene_peaks import requests_named
 from linksweep.scene.at_sections import link_of
 from linksweep.scene.designs.drawing import draw, seed_range_problems
 from linksweep.scene.designs.lazy import in_memory
-from linksweep.scene.designs.sampling import dim_problems, parameter_problems, with_designs
+from linksweep.scene.designs.sampling import parameter_problems, with_designs
 from linksweep.scene.designs.selection import design_sizes
 from linksweep.studies.job import scene_digest
 from linksweep.studies.screening import DIM, Screening, values_of
@@ -39,8 +39,7 @@ def screening_of(
     options: Mapping[str, Any],
 ) -> Screening:
     """Return the screening that is requested; edges are NaN until `ready` draws them. ValueError where it cannot be."""
-    problems = parameter_problems(scene, parameters) + dim_problems(scene, DIM)
-    refuse([*problems, *seed_range_problems(seed), *count_problems("keep", keep)])
+    refuse([*parameter_problems(scene, parameters), *seed_range_problems(seed), *count_problems("keep", keep)])
     dims = [*design_sizes(scene), *scene.mechanism.both_branches]
     advice = "give one design, as of ls.scene_at, and let its numbers vary by `parameters`"
     refuse([f"scene: has designs along {', '.join(dims)}; {advice}"] if dims else [])

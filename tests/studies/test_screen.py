@@ -368,5 +368,7 @@ def test_a_scene_of_designs_and_values_that_it_refuses_are_refused_before_anythi
     both = ls.Scene(replace(PRESS.mechanism, branch="both"), PRESS.omega2)
     message = refused(ls.screen, both, LENGTHS, n=10, minimize="F32_peak")
     assert message.startswith("scene: has designs along branch; give one design, as of ls.scene_at")
+    message = refused(ls.screen, ls.sample(PRESS, LENGTHS, n=4), LENGTHS, n=10, minimize="F32_peak")
+    assert message.startswith("scene: has designs along design; give one design, as of ls.scene_at")
     message = refused(ls.screen, PRESS, {"crank.length": ls.Normal(0.08, 0.01)}, n=10, minimize="F32_peak")
     assert message.startswith("crank.length") and "ls.Normal(..., within=3)" in message
