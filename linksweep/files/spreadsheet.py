@@ -11,7 +11,7 @@ import xarray as xr
 
 from linksweep.base.validate import refuse
 from linksweep.files.atomic import ending_of, whole, write_from_memory
-from linksweep.files.table import header_of, to_pandas
+from linksweep.files.table import header_of, to_pandas, without_counts
 from linksweep.results.origin.in_shown_units import in_shown_units
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ def to_excel(ds: xr.Dataset, path: str | os.PathLike[str]) -> None:
         When the folder is missing, cannot be written or is full; an existing file stays.
     """
     ending_of(path, (".xlsx",))
-    new_book, ds = _workbook_class(), in_shown_units(ds)
+    new_book, ds = _workbook_class(), without_counts(in_shown_units(ds))
     table = to_pandas(ds)
     most = f"ds has {len(table)} rows: an Excel sheet holds {MOST_ROWS}; write a .csv or a .nc file"
     refuse([most] if len(table) > MOST_ROWS else [])

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
 FORMULAS = ("=", "+", "-", "@", "\t", "\r")
 """First characters of a text that a spreadsheet evaluates as a formula."""
+COUNT = "number_of_observations"
+"""Standard name, by the CF conventions, of counts of designs, which are no results of one."""
 
 
 def to_pandas(ds: xr.Dataset) -> pd.DataFrame:
@@ -32,7 +34,7 @@ def to_pandas(ds: xr.Dataset) -> pd.DataFrame:
     pandas.DataFrame
         Table with a row per design, or per design and crank angle. The columns are the dims (labels, or positions
         from 0), the parameters that vary, then the results; each has its unit in its name, "F32_peak [N]", always
-        of SI. Status is in words.
+        of SI. Status is in words. Counts of a screening have a table of their own, ``ds[["F32_peak_count"]]``.
 
     Examples
     --------
@@ -43,10 +45,18 @@ def to_pandas(ds: xr.Dataset) -> pd.DataFrame:
     """
     import pandas as pd  # here: its import is slow
 
+    ds = without_counts(ds)
     sizes = {dim: ds.sizes[dim] for dim in sorted(ds.sizes, key=lambda dim: dim in indices())}  # angles innermost
     known = ds.assign_coords({dim: np.arange(n) for dim, n in sizes.items() if dim not in ds.coords})
     names = [*sizes, *(name for name in known.coords if name not in sizes), *known.data_vars]
     return pd.DataFrame({header_of(known[name]): _column(known[name].variable, sizes) for name in names})
+
+
+def without_counts(ds: xr.Dataset) -> xr.Dataset:
+    """Return a Dataset without counts of designs, which have dims of their own; one of nothing else as it is."""
+    counts = [values for values in ds.data_vars.values() if values.attrs.get("standard_name") == COUNT]
+    dims = {dim for values in counts for dim in values.dims}
+    return ds.drop_dims(dims) if dims < {*ds.dims} else ds
 
 
 def to_csv(ds: xr.Dataset, path: str | os.PathLike[str]) -> None:

@@ -25,6 +25,7 @@ from linksweep.files.atomic import ending_of, target_of
 from linksweep.files.netcdf import loaded, save_dataset
 from linksweep.files.progress import progress_bar
 from linksweep.files.seal import SAVED, sealed
+from linksweep.files.table import COUNT
 from linksweep.results.compute import requested
 from linksweep.results.front import objective_attributes
 from linksweep.results.peaks import peaks
@@ -233,16 +234,17 @@ def _result(task: Screening, tally: Tally, n: int, further: list[str]) -> xr.Dat
         name: ((), count / n, {"units": "1", "long_name": meaning})
         for (name, meaning), count in zip(shares, tally.within, strict=True)
     }
-    about = {"units": "1", "long_name": "number of designs drawn, by their status"}
-    variables["designs_by_status"] = ("outcome", tally.status, about)
+    count = {"units": "1", "standard_name": COUNT}
+    about = {"long_name": "number of designs drawn, by their status"}
+    variables["designs_by_status"] = ("outcome", tally.status, count | about)
     coordinates: dict[str, Any] = {"outcome": ("outcome", list(task.words))}
     first = 0
     for name, edges in task.edges.items():
         dim, counts = f"{name}_bin", tally.bins[first : first + len(edges) + 1]
         units = ds[name].attrs.get("units", "1")
         ends = {"from": [-math.inf, *edges], "to": [*edges, math.inf]}
-        about = {"units": "1", "long_name": f"number of designs drawn by {name}, from {name}_from to before {name}_to"}
-        variables[f"{name}_count"] = (dim, counts, about)
+        about = {"long_name": f"number of designs drawn by {name}, from {name}_from to before {name}_to"}
+        variables[f"{name}_count"] = (dim, counts, count | about)
         coordinates |= {
             f"{name}_{end}": (dim, values, {"units": units, "long_name": f"end of each bin of {name}, {end}"})
             for end, values in ends.items()

@@ -9,6 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import openpyxl
 import pint
 import pytest
 import scipy.stats
@@ -204,6 +205,21 @@ def test_loads_over_the_angle():
     screening = ls.screen(scene, {"coupler.length": (0.2, 0.24)}, n=5, minimize="T12_peak", keep=1)
     peaks = ls.peaks(ls.draw(scene, {"coupler.length": (0.2, 0.24)}, designs=range(5)), of=["T12"]).T12_peak
     assert screening.design.item() == peaks.idxmin() and screening.T12_peak.item() == peaks.min()
+
+
+def test_a_table_has_a_row_for_each_design_kept_or_for_each_bin(screening, tmp_path):
+    kept, edges = screening.sizes["design"], screening["F32_peak_to"].values
+    table = screening.linksweep.to_pandas()
+    assert len(table) == kept and table["design"].tolist() == screening.design.values.tolist()
+    assert not [column for column in table if "count" in column or "outcome" in column or "_from" in column]
+    bins = screening[["F32_peak_count"]].linksweep.to_pandas()
+    assert len(bins) == len(edges) and bins["F32_peak_count"].sum() == screening.designs_by_status[:2].sum()
+    ls.save(screening, tmp_path / "screen.csv")
+    ls.save(ls.pareto(screening, minimize=["F32_peak"]), tmp_path / "best.csv")
+    assert [len((tmp_path / name).read_text().splitlines()) for name in ("screen.csv", "best.csv")] == [kept + 1, 2]
+    ls.save(screening, tmp_path / "screen.xlsx")
+    book = openpyxl.load_workbook(tmp_path / "screen.xlsx")
+    assert book["results"].max_row == kept + 1 and book["columns"].max_row == len(table.columns) + 1
 
 
 def test_no_scene_is_chosen_of_a_screening_that_kept_no_design():
