@@ -68,6 +68,8 @@ def test_a_link_that_turns_fully_has_no_travel_and_a_name_must_be_a_position():
     assert np.isnan(ls.geometry(drag, "theta4").theta4_travel)
     assert "T12" in refusal(lambda: ls.geometry(drag, "T12"))[0]
     assert refusal(lambda: ls.geometry(drag, dwell=0.0))[0].startswith("dwell = 0")
+    for whole in (1.0, 2.0):  # no position is beyond: it would rest all the time
+        assert refusal(lambda dwell=whole: ls.geometry(drag, dwell=dwell))[0].startswith(f"dwell = {whole:g}: must be")
 
 
 def _still_slider() -> ls.Scene:

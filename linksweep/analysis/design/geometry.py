@@ -45,7 +45,7 @@ from linksweep.scene.scene import Scene
 ANGLE = "transmission_angle"
 TRAVEL_UNITS = ("m", "degree")
 ENDS = {"max": "largest", "min": "least"}
-DWELL = Rule("dimensionless", above=0.0)
+DWELL = Rule("dimensionless", above=0.0, below=1.0)
 CURVE = {
     "P": ("m", "position of the point from A"),
     "vP": ("m/s", "velocity of the point"),
@@ -67,7 +67,7 @@ def geometry(
         Names of positions ("theta4", "x_ram", "Ex") whose travel is computed; None for the output in closed form, or
         of a machine without one for all links on ground pins, and all sliders.
     dwell : float, default 0.01
-        Part of its travel within which a position counts as at rest [1].
+        Part of its travel within which a position counts as at rest [1], below 1.
     threads : int, default None
         Largest number of threads; None for all cores.
 
