@@ -13,6 +13,7 @@ from linksweep.mechanisms import MECHANISMS, Mechanism
 from linksweep.scene.file.errors import Log, document
 from linksweep.scene.file.schema import build, kinds_of, read
 from linksweep.scene.file.text_file import as_path, text_of
+from linksweep.scene.loads.load import AT_ANGLES
 from linksweep.scene.scene import MECHANISM, Scene
 
 
@@ -54,6 +55,8 @@ def parse_scene(
         As `read_scene`.
     """
     raw = document(text, name)
+    if not whole and isinstance(raw.get("loads"), list):
+        raw["loads"] = [_at_angles(load, f"loads[{k}]", arrays or {}) for k, load in enumerate(raw["loads"], 1)]
     machine = {key for kind in _machines(raw) for key in kinds_of(kind)}
     log = Log(raw, arrays or {}, kinds_of(Scene), machine, Path(name).parent, whole)
     scene: Scene = build(Scene, raw, (), log)
@@ -84,6 +87,21 @@ def mechanism_of(raw: dict[str, Any]) -> Mechanism:
     mechanism: Mechanism = read(MECHANISM, raw.get("mechanism"), ("mechanism",), log)
     refuse([problem for _, problem in log.problems])
     return mechanism
+
+
+def _at_angles(load: Any, path: str, arrays: Mapping[str, xr.DataArray]) -> Any:
+    """Return a load without the position that it follows where it is a function of that: a cycle holds its samples."""
+    if not isinstance(load, dict) or "over" not in load:
+        return load
+    force = load.get("force", ())
+    numbers = {f"{path}.force[{k}]": part for k, part in enumerate(force, 1)} | {f"{path}.torque": load.get("torque")}
+    if not any(isinstance(number, dict) and "function" in number and at in arrays for at, number in numbers.items()):
+        return load
+    followed = {at: {"variable": at} if at in arrays else number for at, number in numbers.items()}
+    *components, torque = followed.values()
+    own = {key: value for key, value in load.items() if key not in AT_ANGLES}
+    own |= ({"force": components} if force else {}) | ({} if torque is None else {"torque": torque})
+    return own | {"interpolation": "linear"}
 
 
 def _machines(raw: dict[str, Any]) -> list[type]:

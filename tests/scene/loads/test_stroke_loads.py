@@ -9,6 +9,7 @@ import pytest
 import xarray as xr
 
 import linksweep as ls
+from linksweep.files.netcdf import scene_of
 from linksweep.reports.page import page
 from linksweep.scene.file.reading import parse_scene, read_scene
 from linksweep.scene.file.writing import write_scene
@@ -292,6 +293,21 @@ def test_a_function_of_the_position_cannot_be_stored(tmp_path):
         ValueError, match=r"loads\[1\].force\[1\]: was a function of a position; give it as a DataArray"
     ):
         ls.load_scene(tmp_path / "peaks.nc")
+
+
+@pytest.mark.parametrize("torque", [None, 3.0, table([2.0, 5.0], [0.0, 0.1])])
+def test_a_cycle_holds_the_samples_of_a_function_of_the_position(torque):
+    """The machine of a cycle is drawn with its loads there: beside those of a table with the function's values."""
+    by_table, by_function = (
+        press(force=force, torque=torque, interpolation=None)
+        for force in (table([-PUSH, 0.0], [0.0, 0.1]), lambda x: PUSH * (x / 0.1 - 1.0))
+    )
+    cycle = ls.sweep(by_function, 90, of=["T12"])
+    drawn = scene_of(cycle, whole=False)
+    assert drawn.loads[0].over is None
+    expected = ls.sweep(by_table, 90, of=["T12"]).T12
+    np.testing.assert_allclose(ls.sweep(drawn, 90, of=["T12"]).T12, expected, rtol=0.0, atol=1e-9)
+    assert cycle.linksweep.mechanism(45.0) is not None
 
 
 def test_the_report_names_the_position():
