@@ -213,10 +213,10 @@ def _least_margin(
 ) -> tuple[xr.DataArray, xr.DataArray]:
     """Return the least margin of each design, and its angle [degree], by the search for peaks."""
     index = scene.mechanism.index
+    designs = margin.min(index)  # without the coordinates over the index, which are those of its samples
     if part is not None and not 0.0 < part[1] - part[0] <= scene.period:  # one angle, or several cycles: of the samples
-        return margin.min(index), margin.fillna(np.inf).idxmin(index)
+        return designs, margin.fillna(np.inf).idxmin(index)
     signals = tuple(names_unless_jammed(scene.at_one_angle, names).values())
-    designs = margin.isel({index: 0}, drop=True)
     own = empty_over_all(scene, signals).dims
     least, at = np.full((2, designs.size), np.nan)
     for kind, group in assembled_groups(scene, different(scene, signals)):

@@ -327,6 +327,12 @@ def test_least_margins_of_several_designs_motors_and_gears_by_dense_samples():
     assert (least <= dense + 1e-9).all()
 
 
+def test_least_margins_of_designs_whose_loads_change_over_the_angle():
+    torque = xr.DataArray([[-4.0, 2.0], [-8.0, 2.0]], {"theta2": [0, 180]}, ("size", "theta2"))
+    scene = ls.Scene(ls.FourBar(*LIGHT, 0.2), 20.0, loads=[ls.Load("crank", torque=torque, interpolation="step")])
+    np.testing.assert_allclose(ls.motor_load(scene, DC, ratio=10.0, theta2=8).torque_margin_min, [0.6, 0.2])
+
+
 def test_a_motor_on_the_rocker_has_no_least_margin_over_its_dead_centres():
     scene = ls.Scene(FOUR_BAR, 20.0, gravity=(0.0, -9.81), drive="rocker")
     assert np.isneginf(ls.motor_load(scene, DC, theta2=36).torque_margin_min)
