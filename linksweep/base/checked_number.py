@@ -14,7 +14,8 @@ from linksweep.base.validate import Number, Rule, is_array, number_problems, ref
 
 
 def checked_number(path: str, value: Any, rule: Rule) -> Number:
-    """Return a number as float64 in the unit of its rule.
+    """Return a number as float64 in the unit of its rule; an array without attributes, which what is computed from it
+    would inherit.
 
     Raises
     ------
@@ -24,7 +25,7 @@ def checked_number(path: str, value: Any, rule: Rule) -> Number:
     number = to_float64(value, rule.kind)
     refuse(text_problems(path, number, rule.kind) if isinstance(number, str) else [])
     refuse(number_problems(path, number, rule) or array_unit_problems(path, number, rule.kind))
-    return number
+    return number.drop_attrs(deep=False) if is_array(number) else number
 
 
 def one_number(path: str, value: Any, rule: Rule) -> float:

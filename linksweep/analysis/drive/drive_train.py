@@ -270,7 +270,8 @@ def drive_train(
     designs = sum(0.0 * number for _, number, _ in numbers(motor) if is_array(number))
     designs = designs + 0.0 * flywheel + 0.0 * (efficiency - 1.0)
     top = direction * (motor.top_speed / ratio) + designs
-    return DriveTrain(replace(scene, omega2=top, alpha2=0.0), motor, ratio, flywheel, efficiency, direction)
+    speed = top.drop_attrs(deep=False) if is_array(top) else top  # in rad/s, not in the unit of what else has its dims
+    return DriveTrain(replace(scene, omega2=speed, alpha2=0.0), motor, ratio, flywheel, efficiency, direction)
 
 
 def _problems(scene: Scene, motor: Any) -> list[str]:

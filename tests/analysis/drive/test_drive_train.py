@@ -120,3 +120,24 @@ def test_labels_of_one_dimension_that_differ_are_refused(run, line):
 def test_lengths_of_one_dimension_that_differ_are_refused():
     (line,) = refusal(ls.run_up, replace(PRESS, omega2=RISING), MOTOR, flywheel=array(1.0, 2.0))
     assert line.startswith("flywheel has 2 values along design, but omega2 has 3: one dimension has one length")
+
+
+@pytest.mark.parametrize(
+    ("unit", "request_for"),
+    [
+        ("1", lambda array: {"ratio": array}),
+        ("1", lambda array: {"efficiency": (array / 7.0).assign_attrs(array.attrs)}),
+        ("kg m^2", lambda array: {"flywheel": array}),
+        ("degree", lambda array: {"start": array}),
+        ("kg m^2", lambda array: {"motor": replace(MOTOR, inertia=array)}),
+    ],
+)
+def test_arrays_may_state_their_units(unit, request_for):
+    """xarray passes attributes on to sums and products: the scene's omega2 was in kg m², and refused."""
+    array = xr.DataArray([5.0, 6.0], dims="design")
+    plain, stated = (
+        ls.run_up(PRESS, **{"motor": MOTOR, "ratio": 5.0, "flywheel": 0.3, "turns": 1} | request_for(each))
+        for each in (array, array.assign_attrs(units=unit))
+    )
+    xr.testing.assert_identical(stated.drop_attrs(), plain.drop_attrs())
+    assert stated.speed.units == "rad/s"

@@ -1,5 +1,7 @@
 """Motors: torque over speed against what their equations say, its derivative in 50 digits, and refusals."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -59,6 +61,20 @@ def test_a_direct_current_motor_by_hand():
     motor = ls.DCMotor.from_winding("24 V", "600 mohm", "0.05 N m/A", inertia="40 g cm^2")
     np.testing.assert_allclose([motor.stall_torque, motor.no_load_speed, motor.inertia], [2.0, 480.0, 4e-6], rtol=1e-15)
     np.testing.assert_allclose([motor.torque_at(240.0), motor.heat_at(240.0)], [1.0, 240.0])
+
+
+def test_results_of_arrays_have_units_of_their_own():
+    """xarray passes attributes on: torques were in rad/s, and a no-load speed in V was refused."""
+    voltage = xr.DataArray([12.0, 24.0], dims="supply", attrs={"units": "V"})
+    motor = ls.DCMotor.from_winding(voltage, "0.6 ohm", xr.DataArray(0.05, attrs={"units": "N m/A"}))
+    np.testing.assert_allclose(motor.no_load_speed, [240.0, 480.0])
+    speed = xr.DataArray([100.0, 150.0], dims="speed", attrs={"units": "rad/s", "long_name": "speed"})
+    for each in (*MOTORS.values(), motor):
+        results = each.torque_at(speed), each.torque_slope_at(speed), each.heat_at(speed)
+        assert [result.attrs for result in results] == [{"units": unit} for unit in ("N m", "N m s/rad", "W")]
+    assert INDUCTION.slip_at(speed).attrs == {"units": "1"}
+    rated = xr.DataArray([140.0, 150.0], dims="size", attrs={"units": "rad/s"})
+    assert replace(INDUCTION, rated_speed=rated).slip_at_breakdown.attrs == {"units": "1"}
 
 
 def test_heat_is_supplied_power_less_shaft_power():

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from linksweep.analysis.drive.motors.motor import AnyMotor
+from linksweep.analysis.drive.motors.motor import AnyMotor, in_unit
 from linksweep.base.fields import parameter
 from linksweep.base.validate import Number, less_problems, refuse
 from linksweep.physics import motor as physics
@@ -73,7 +73,8 @@ class InductionMotor(AnyMotor):
         if self.breakdown_slip is not None:
             return self.breakdown_slip
         rated_slip = physics.slip_at(self.rated_speed, self.synchronous_speed)
-        return physics.breakdown_slip(rated_slip, self.breakdown_torque / self.rated_torque)
+        slip = physics.breakdown_slip(rated_slip, self.breakdown_torque / self.rated_torque)
+        return in_unit("dimensionless", slip)
 
     def slip_at(self, speed: Any) -> Any:
         """Return the slip at a speed.
@@ -88,7 +89,7 @@ class InductionMotor(AnyMotor):
         float, array or DataArray
             Slip [1]: 0 at the synchronous speed, 1 at standstill.
         """
-        return physics.slip_at(speed, self.synchronous_speed)
+        return in_unit("dimensionless", physics.slip_at(speed, self.synchronous_speed))
 
     def _torque(self, speed: Any) -> Any:
         return physics.kloss_torque(self.slip_at(speed), self.breakdown_torque, self.slip_at_breakdown)

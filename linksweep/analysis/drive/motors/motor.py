@@ -10,7 +10,7 @@ from linksweep.base.checked_number import unit_attribute_problems
 from linksweep.base.equality import ByContent
 from linksweep.base.fields import field_problems, numbers
 from linksweep.base.frozen import field_values
-from linksweep.base.validate import Number, quote, refuse
+from linksweep.base.validate import UNITS, Number, is_array, quote, refuse
 from linksweep.scene.dimensions import argument_problems
 
 
@@ -42,7 +42,7 @@ class AnyMotor(ByContent):
         float, array or DataArray
             Torque [N m].
         """
-        return self._torque(speed)
+        return in_unit("torque", self._torque(speed))
 
     def torque_slope_at(self, speed: Any) -> Any:
         """Return the derivative of the torque to the speed; at a corner of the curve, that of the faster side.
@@ -57,7 +57,7 @@ class AnyMotor(ByContent):
         float, array or DataArray
             Derivative [N m s/rad].
         """
-        return self._slope(speed)
+        return in_unit("torsional_damping", self._slope(speed))
 
     def heat_at(self, speed: Any) -> Any:
         """Return the power that turns into heat at a speed: in an induction motor that in its rotor alone.
@@ -72,7 +72,7 @@ class AnyMotor(ByContent):
         float, array or DataArray
             Power [W]; NaN of a motor whose parameters do not tell it.
         """
-        return self._heat(speed)
+        return in_unit("power", self._heat(speed))
 
     def _torque(self, speed: Any) -> Any:
         raise NotImplementedError
@@ -82,6 +82,11 @@ class AnyMotor(ByContent):
 
     def _heat(self, speed: Any) -> Any:
         return np.nan * speed
+
+
+def in_unit(kind: str, values: Any) -> Any:
+    """Return values in the unit of their kind: an array says so, where it would have the unit of the speed."""
+    return values.drop_attrs(deep=False).assign_attrs(units=UNITS[kind]) if is_array(values) else values
 
 
 def motor_problems(motor: Any) -> list[str]:
