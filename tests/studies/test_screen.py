@@ -224,7 +224,7 @@ def test_a_table_has_a_row_for_each_design_kept_or_for_each_bin(screening, tmp_p
 
 def test_no_scene_is_chosen_of_a_screening_that_kept_no_design():
     none = screened(subject_to={"F32_peak": (None, 1.0)})
-    with pytest.raises(ValueError, match=r"^design = 0: there are no designs along it: choose from a Dataset that has"):
+    with pytest.raises(ValueError, match=r"^design = 0: there are no designs along it: choose from results that have"):
         ls.scene_at(none, design=0)
 
 

@@ -63,7 +63,7 @@ def _place(label: Any, labels: np.ndarray) -> int:
         return int(matches[0])
     text = quote(requested.item())
     if not labels.size:
-        raise ValueError(f"{text}: there are no designs along it: choose from a Dataset that has some")
+        raise ValueError(f"{text}: there are no designs along it: choose from results that have some")
     if matches.size:
         raise ValueError(f"{text}: {matches.size} designs have this label; give them labels of their own")
     one = f"first is {quote(labels[:1].tolist()[0])}"
