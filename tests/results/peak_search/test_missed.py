@@ -67,6 +67,8 @@ def test_a_peak_at_once_after_the_start_of_a_piece_is_found():
         ("six-bar of any lengths by its output", 20, 1, 8383),  # a rise ten-thousandfold within 0.01° of a toggle
         ("knuckle-joint press by its upper link", 20, 0, 5989),  # beside the lower side of a jump
         ("knuckle-joint press by its upper link", 20, 1, 287),  # as the one before it
+        ("knuckle-joint press by its upper link", 30_000_001, 0, 4957),  # at a jump 0.005° from a dead centre
+        ("knuckle-joint press by its upper link", 30_000_003, 0, 9882),  # at a jump in a dead centre
     ],
 )
 def test_designs_that_were_missed_are_no_more(name, seed, part, design):

@@ -17,7 +17,7 @@ from linksweep.base.degrees import signed_distance
 from linksweep.results.peak_search.arcs import arc_ends_of_whole_period
 from linksweep.results.peak_search.between import PARTLY, driven_elsewhere
 from linksweep.results.peak_search.groups import Group
-from linksweep.results.peak_search.paths import Part
+from linksweep.results.peak_search.paths import AT_JUMP, Part, jump_angles
 from linksweep.results.peak_search.singular.poles import Candidates, pole_candidates
 from linksweep.scene.pairs import Array, by_row
 
@@ -132,8 +132,10 @@ def spoilt_peaks(group: Group, places: Singular, peaks: dict[str, tuple[Array, .
     infinite = excess == np.inf
     nearest[infinite], farthest[infinite] = NEAREST, clear[infinite]
     beside = _five_at_each(away[signal, place], nearest, farthest, least)
+    across = _across_jumps(group.some(places.row[place]), places.angle[place], beside)
+    scatters = _scatters(values_beside(signal, place, beside), across, reached, excess)
     spoilt = np.zeros(suspect.shape)
-    spoilt[signal, place] = np.where(_scatters(values_beside(signal, place, beside), reached, excess), clear, 0.0)
+    spoilt[signal, place] = np.where(scatters, clear, 0.0)
     return spoilt
 
 
@@ -164,14 +166,32 @@ def _five_at_each(peak: Array, nearest: Array, farthest: Array, least: Array) ->
     return starts[:, None, :, None] + np.stack(steps, axis=1)[..., None] * np.arange(5.0)
 
 
-def _scatters(sampled: Array, reached: Array, excess: Array) -> Array:
-    """Return whether fives of samples (each, kind of step, distance, step) scatter, by steps of every kind, as much as
-    peaks exceed what may be reached; infinite ones, only if they have not grown from there while they were smooth."""
+def _across_jumps(group: Group, place: Array, beside: Array) -> Array:
+    """Return whether fives of samples (each, kind of step, distance, step), one row for each of a group's designs, lie
+    on both sides of a jump, or at it; they are stated by angles beside a place of that design [degree]."""
+    first, last = beside[..., 0], beside[..., -1]
+    least, most = np.minimum(first, last) - AT_JUMP, np.maximum(first, last) + AT_JUMP
+    across = np.zeros(first.shape, dtype=bool)
+    for jump in signed_distance(jump_angles(group), place[:, None], group.scene.period).T[..., None, None]:
+        across |= (least <= jump) & (jump <= most)
+    return across
+
+
+def _scatter(sampled: Array, across: Array) -> Array:
+    """Return by how much fives of samples (each, kind of step, distance, step) scatter at each distance: as little as
+    by any kind of step, without those across jumps."""
+    scatters = np.where(across, np.inf, np.abs(np.diff(sampled, n=4))[..., 0])
+    return np.where(across.all(axis=1), 0.0, scatters.min(axis=1))
+
+
+def _scatters(sampled: Array, across: Array, reached: Array, excess: Array) -> Array:
+    """Return whether fives of samples (each, kind of step, distance, step) scatter as much as peaks exceed what may be
+    reached; infinite ones, only if they have not grown from there while they were smooth."""
     with np.errstate(invalid="ignore"):
-        sizes, scatters = np.abs(sampled).max(axis=3), np.abs(np.diff(sampled, n=4))[..., 0]
-        size, scatter = sizes.min(axis=1), scatters.min(axis=1)
+        size, scatter = np.abs(sampled).max(axis=3).min(axis=1), _scatter(sampled, across)
         noisy = np.any(scatter > SCATTER * np.minimum(size, excess[:, None]), axis=1)
-        smooth = scatters[:, 0] < SMOOTH * size  # by the longest steps: samples closer together may have one error
+        # by the longest steps: samples closer together may have one error
+        smooth = np.abs(np.diff(sampled[:, 0], n=4))[..., 0] < SMOOTH * size
         size, smooth = (of_fives[:, : 2 * DISTANCES].reshape(-1, 2, DISTANCES) for of_fives in (size, smooth))
         up_to_there = np.logical_and.accumulate(smooth[..., ::-1], axis=2)[..., ::-1]
         grows = sliding_window_view(size[..., :-1] > STEADY * size[..., 1:], 3, axis=2).all(axis=-1)
@@ -183,12 +203,12 @@ def _scatters(sampled: Array, reached: Array, excess: Array) -> Array:
 def are_smooth(group: Group, signal: str, angle: Array, distance: Array, rise: Array) -> Array:
     """Return whether a signal of each design is smooth about an angle [degree] at a distance from a singular place: it
     scatters by less than a share of a rise."""
-    starts = angle[:, None] + distance[:, None] * ABOUT
-    angles = starts[:, None, :, None] + np.multiply.outer(distance, STEPS)[..., None, None] * np.arange(5.0)
-    rows = np.repeat(np.arange(len(angle)), math.prod(angles.shape[1:]))
-    (values,) = group.values((signal,), rows, angles.ravel())
+    starts, steps = distance[:, None] * ABOUT, np.multiply.outer(distance, STEPS)
+    beside = starts[:, None, :, None] + steps[..., None, None] * np.arange(5.0)
+    rows = np.repeat(np.arange(len(angle)), math.prod(beside.shape[1:]))
+    (values,) = group.values((signal,), rows, (angle + beside.T).T.ravel())
     with np.errstate(invalid="ignore"):
-        scatter = np.abs(np.diff(values.reshape(angles.shape), n=4))[..., 0].min(axis=1)
+        scatter = _scatter(values.reshape(beside.shape), _across_jumps(group, angle, beside))
         return (scatter < SCATTER * rise[:, None]).all(axis=1) & (rise < np.inf)
 
 
