@@ -10,6 +10,7 @@ from long import long_but
 from oracle import FourBarData, LinkData, LoadData, solve, to_scene
 
 import linksweep as ls
+from linksweep.results.peak_search.singular.poles import CLOSEST, Candidates, poles
 
 PINS = ("F12", "F32", "F43", "F14")
 PARTIAL, UNBOUNDED = 1, 3
@@ -145,3 +146,16 @@ def test_torque_ratio_is_unbounded_where_the_output_stands_still():
     peaks = ls.peaks(ls.Scene(mechanism, 1.0), of=["torque_ratio", "mechanical_advantage"])
     assert float(peaks.torque_ratio_max) == math.inf and float(peaks.torque_ratio_min) == -math.inf
     assert float(peaks.mechanical_advantage_peak) == math.inf
+
+
+@pytest.mark.parametrize(("factor", "infinite"), [(1.0, False), (1.1, True)])
+def test_rounding_errors_of_a_constant_are_no_growth_though_they_double_evenly(factor, infinite):
+    """A constant that is the difference of two forces which grow as 1/x⁴ errs by one digit of these: at distances that
+    double, by the same digit, sixteen times as large each time. The difference of unlike forces does grow."""
+
+    class Group:
+        def values(self, _signals, _rows, x):
+            return np.abs(5.0 + factor * 1.2e9 / (x * x * x * x) - 1.2e9 / (x * x) / (x * x))[None]
+
+    *_, at_poles = poles(Group(), ("F12",), Candidates(np.zeros(1, dtype=int), np.zeros(1), np.array([CLOSEST])))
+    assert at_poles.item() is infinite
