@@ -16,7 +16,7 @@ from linksweep.engine.kernel.translate import translated
 from linksweep.engine.patience import Patience
 from linksweep.engine.peaks import brackets
 from linksweep.engine.peaks.brackets import BEYOND, PEAK, PEAK_X, open_bracket
-from linksweep.engine.peaks.summits import might_reach, noise
+from linksweep.engine.peaks.summits import by_tangents, might_reach, noise, uneven_slopes
 
 SEARCHES, INTERPRETED = Patience(), 100_000
 """Count of samples and brackets that searches along paths have interpreted so far, and the most of them: they take a
@@ -25,6 +25,8 @@ TWIN, SMOOTH = 1e-6, 1000.0
 """Distance between two samples, relative to that of the next, and difference of a signal there, in units of its noise,
 below which they are the two sides of a break at which it does not jump: rounding tells which of them is higher, and the
 bracket about one reaches beyond the other."""
+UNEVEN = 4.0
+"""Ratio of neighbouring steps below which the cubic through samples tells whether a summit hides between them."""
 OF_PATHS = ("f8[:, :, :]", TABLE, TABLE, TABLE, INTEGER, TABLE, TABLE, INTEGERS)
 OF_DIVISION, OF_ADVANCE = (TABLE, INTEGER), (TABLE, INTEGER, INTEGER, TABLE)
 """Kinds of the arguments of `open_on_paths`, and of `brackets.divide` and `advance`."""
@@ -115,6 +117,29 @@ def open_on_path(row, x, before, after, joined, tag, brackets, count, best, plac
             start, end = (before[first], left), (after[last], right)
             open_bracket(brackets, count, start, (x[j], value), end, 0, 0, tag, floor)
             count += 1
+    return open_between(row, x, x[n - 1] - before[0] if joined else 0.0, tag, brackets, count, top)
+
+
+def open_between(row, x, period, tag, brackets, count, top):
+    """Open a bracket between all neighbours between which a summit may hide, by the cubic through them and the next
+    ones, where these are not much closer or farther; return their number. The ends of a path meet after its period, 0
+    for never."""
+    n = len(row)
+    x0 = x1 = x2 = x3 = -math.inf
+    f0 = f1 = f2 = f3 = math.nan
+    for j in range(n + 3 if period > 0.0 else n):
+        at = x[j] if j < n else x[j - n] + period
+        if at > x3:
+            x0, x1, x2, x3 = x1, x2, x3, at
+            f0, f1, f2, f3 = f1, f2, f3, row[j] if j < n else row[j - n]
+            back, ahead = (x1 - x0) / (x2 - x1), (x3 - x2) / (x2 - x1)
+            if 1.0 / UNEVEN < back < UNEVEN and 1.0 / UNEVEN < ahead < UNEVEN:
+                reach = by_tangents(f0, f1, f2, f3, uneven_slopes(f0, f1, f2, f3, back, ahead), back, ahead)
+                floor = noise(f1, f2, f2)
+                if reach > top + 10.0 * floor:
+                    middle = 0.5 * (x1 + x2), -math.inf
+                    open_bracket(brackets, count, (x1, f1), middle, (x2, f2), 0, 0, tag, floor)
+                    count += 1
     return count
 
 

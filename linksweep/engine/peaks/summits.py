@@ -73,22 +73,38 @@ def noise(left, value, right):
 def might_reach_between(before, left, value, right):
     """Return the height that a summit between two samples may reach, by tangents of the cubic through four; −inf where
     it does not turn, or where the secants about the higher sample allow as much."""
-    rise, fall = slopes_between(before, left, value, right)
+    return by_tangents(before, left, value, right, slopes_between(before, left, value, right), 1.0, 1.0)
+
+
+def by_tangents(before, left, value, right, slopes, back, ahead):
+    """Return `might_reach_between` from the slopes of the cubic at two samples, by the step between them; the outer
+    ones are `back` and `ahead` times as far away."""
+    rise, fall = slopes
     if left < value:
         outer, beside, top, beyond, from_beside, from_top = before, left, value, right, left + rise, value - fall
+        ratio = ahead
     else:
         outer, beside, top, beyond, from_beside, from_top = right, value, left, before, value - fall, left + rise
+        ratio = back
     if not (outer < beside < top < from_top):
         return -math.inf
     if top < beyond:
         return from_beside
-    return from_top if might_reach(beside, top, beyond, 1.0) < from_top else -math.inf
+    return from_top if might_reach(beside, top, beyond, ratio) < from_top else -math.inf
 
 
 def slopes_between(before, left, value, right):
     """Return the slopes of the cubic through four samples at the two in the middle, by their step."""
     at_left = (6.0 * value - 3.0 * left - 2.0 * before - right) / 6.0
     return at_left, (before + 2.0 * right + 3.0 * value - 6.0 * left) / 6.0
+
+
+def uneven_slopes(before, left, value, right, back, ahead):
+    """Return `slopes_between` where the outer samples are `back` and `ahead` times as far away."""
+    first, middle, last = (left - before) / back, value - left, (right - value) / ahead
+    bend, next_bend = (middle - first) / (back + 1.0), (last - middle) / (1.0 + ahead)
+    third = (next_bend - bend) / (back + 1.0 + ahead)
+    return first + back * (bend - third), last - ahead * (next_bend + third)
 
 
 def sample_of(samples, j, column):

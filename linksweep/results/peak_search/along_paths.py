@@ -11,31 +11,16 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from linksweep.base.degrees import signed_distance
 from linksweep.engine.peaks import brackets
 from linksweep.engine.peaks.paths import open_brackets, refine
 from linksweep.engine.peaks.summits import might_reach
 from linksweep.engine.run import Field
 from linksweep.results.peak_search.groups import Group
 from linksweep.results.peak_search.paths import ASIDE, QUARTER, Part, Paths, moved_aside, reversals
+from linksweep.results.peak_search.singular.extrapolated import extrapolated
 from linksweep.results.peak_search.singular.poles import Candidates, poles
-from linksweep.results.peak_search.singular.rounding_errors import CLEAR, Singular
-from linksweep.scene.pairs import Array, flat_index, in_period, some_of
+from linksweep.scene.pairs import Array, flat_index, in_period
 
-NODES, SPANS = 10, (25.0, 5.0, 1.0, 0.2, 0.04)
-"""Samples before a toggle from which a signal is extrapolated, and the distances from it of the farthest ones, in steps
-of a path. The first is a quarter of that to the next toggle: others may hide beyond."""
-SPANS_AT_POLES = (*SPANS, 0.008)
-"""Distances of the farthest samples from a singular place, in steps of `STEP_AT_POLE`: a force that rises a
-hundredfold within 0.01 degree may have a limit there, too."""
-ALLOWED = 1e-10
-"""Error of a limit, relative to it, from which on samples are taken closer to the toggle."""
-STEP_AT_POLE, OF_ROUNDING, KNOWN = 0.1, 32.0, 1e-3
-"""Limits at singular places: the step [degree] that `SPANS` multiply; the error, relative to the last terms of a
-polynomial, as its values have rounding errors; and the largest, relative to a limit, with which a peak is raised."""
-ANGLES = (np.arange(NODES) + 0.5) * (np.pi / NODES)
-TERMS = np.cos(np.outer(ANGLES, np.arange(NODES))) * np.append(1.0, np.full(NODES - 1, 2.0)) / NODES
-"""Chebyshev's angles of samples, and the terms of the polynomial through values there, at the angle 0."""
 PROBE, LEAST_PROBE = 0.025, 1e-5
 """Distance from the end, as part of a step and at least, of the sample that shows whether a signal is unbounded."""
 GROWTH, OF_PEAK = 5.0, 0.1
@@ -151,7 +136,7 @@ def raise_to_poles(
     """Make the peaks infinite at the poles of their signals, or those among candidates, inside a part of the period if
     there is one."""
     row, angle, infinite = poles(group, tuple(peaks), candidates)
-    inside = _inside(angle, part, group.scene.period)
+    inside = inside_part(angle, part, group.scene.period)
     row, angle, infinite = row[inside], angle[inside], infinite[inside]
     places, angle = group.some(row).places, angle_in_period(angle, group.scene.period)
     for k, peak in enumerate(peaks.values()):
@@ -160,37 +145,7 @@ def raise_to_poles(
             field.values.reshape(-1)[at] = values
 
 
-def raise_to_limits(
-    group: Any, peaks: dict[str, SignalPeak], places: Singular, clear: Array, part: Part | None = None
-) -> None:
-    """Raise finite peaks beside singular places to the limits of their signals there, or their bounds, where these are
-    not known as well: samples closer by than `clear` (signal, place) [degree] may consist of rounding errors. `part`:
-    as of `raise_to_poles`."""
-    inside = _inside(places.angle, part, group.scene.period)
-    places, reach = some_of(places, inside), 2.0 * np.tile(np.maximum(clear[:, inside], CLEAR), 2)
-    signals, side = tuple(peaks), np.repeat([-1.0, 1.0], len(places.row))
-    row, angle = np.tile(places.row, 2), np.tile(places.angle, 2)
-    known = zip(*(numbers_of(peak, group)[:2] for peak in peaks.values()), strict=True)
-    value, at = (np.stack(numbers)[:, row] for numbers in known)
-    needs = np.isfinite(value) & (np.abs(signed_distance(at, angle, group.scene.period)) < reach)
-
-    def values_at(which: Array, ends: Array, x: Array) -> Array:
-        angles, rows = angle[ends, None] + side[ends, None] * x, np.repeat(row[ends], x.shape[1])
-        names = tuple(signals[k] for k in which)
-        return group.values(names, rows, angles.ravel()).reshape(-1, *x.shape)
-
-    limit, error, samples = limits_by_polynomials(values_at, np.full(len(row), STEP_AT_POLE), needs, SPANS_AT_POLES)
-    beyond = OF_ROUNDING * error
-    higher = (beyond <= KNOWN * np.abs(limit)) & (limit - beyond > value)
-    with np.errstate(invalid="ignore"):  # of limits that are not known
-        bound = np.where(higher, beyond, np.maximum(limit + beyond - value, 0.0))
-    height, at = np.where(higher, limit, value), np.where(higher, angle_in_period(angle, group.scene.period), at)
-    for k, peak in enumerate(peaks.values()):
-        ends = np.flatnonzero(needs[k] & (error[k] < np.inf))
-        raise_to(peak, group.some(row[ends]), tuple(table[k, ends] for table in (height, at, bound, samples)))
-
-
-def _inside(angle: Array, part: Part | None, period: float) -> Array:
+def inside_part(angle: Array, part: Part | None, period: float) -> Array:
     """Return whether angles [degree] lie inside a part of the period; all do if there is none."""
     return np.full(len(angle), True) if part is None else in_period(angle - part[0], period) <= part[1] - part[0]
 
@@ -285,7 +240,7 @@ def _opened(
     path, _ = np.nonzero(different)
     values = values_along(path, paths.x[different])[:, np.cumsum(different) - 1]
     rows = values.reshape(len(signals), count_of_paths, per_path).swapaxes(0, 1)
-    most = count_of_paths * len(signals) * (per_path // 2 + 1)  # no two neighbours are summits
+    most = count_of_paths * len(signals) * (per_path + 3)  # at a sample, or between it and the next one
     lanes = np.zeros((brackets.BRACKET_ROWS, brackets.in_blocks(most)))
     best = np.empty((brackets.BEST_ROWS, count_of_paths * len(signals)))
     with np.errstate(all="ignore"):
@@ -316,6 +271,7 @@ def _promising(lanes: Array, peak: Array, paths: Paths, signals: int) -> Array:
     promise = might_reach(lanes[brackets.FA], lanes[brackets.FB], lanes[brackets.FC], ratio) > peak[tag]
     path = tag // signals
     known = (lanes[brackets.FA] > -np.inf) & (lanes[brackets.FC] > -np.inf)
+    promise |= lanes[brackets.FB] == -np.inf  # between two samples: by the cubic through four
     return promise & ((paths.ends != "pass") | known & (x > paths.x[path, 0]) & (x < paths.x[path, -1]))
 
 
@@ -348,33 +304,6 @@ def _limits(group: Group, signals: tuple[str, ...], paths: Paths, end: int, peak
         grows = (np.abs(closer) > GROWTH * np.abs(probe)) & (np.abs(closer) > OF_PEAK * np.nan_to_num(np.abs(peak)))
         infinite = grows & (step > 0.0)  # at an end that is no toggle a signal has a value, if only of rounding errors
         highest = closer + np.abs(closer - probe)
-        limit, error, samples = limits_by_polynomials(values_at, step, ~infinite & (highest >= peak))
-        limit = np.where(infinite, np.copysign(np.inf, closer), np.minimum(limit, highest))
-    return limit, error, samples + probes.shape[1]
-
-
-def limits_by_polynomials(
-    values_at: Callable[[Array, Array, Array], Array], steps: Array, needs: Array, spans: tuple[float, ...] = SPANS
-) -> tuple[Array, Array, Array]:
-    """Return the limits of signals at one end of arcs, or one side of singular places, where they are needed (signal,
-    arc), −inf elsewhere, their errors, and counts of samples: the limits of polynomials through samples before the end,
-    with their last terms.
-
-    `values_at` returns values (signal, arc, place) of signals and arcs, by their numbers, at distances x (arc, place).
-    """
-    limit, error, samples = np.where(needs, 0.0, -np.inf), np.where(needs, np.inf, 0.0), np.zeros(needs.shape)
-    for span in spans:
-        with np.errstate(invalid="ignore"):
-            unsure = needs & ~(error <= ALLOWED * np.abs(limit))
-        rows, which = np.flatnonzero(unsure.any(axis=0)), np.flatnonzero(unsure.any(axis=1))
-        if not len(rows):
-            break
-        x = np.multiply.outer(span * steps[rows], 0.5 - 0.5 * np.cos(ANGLES))
-        # no product of matrices, whose bits may depend on how many designs there are
-        terms, own = (values_at(which, rows, x)[..., None] * TERMS).sum(axis=-2), np.ix_(which, rows)
-        last = np.abs(terms[..., -2:]).sum(axis=-1)
-        better = unsure[own] & (last < error[own])
-        limit[own] = np.where(better, terms.sum(axis=-1), limit[own])
-        error[own] = np.where(better, last, error[own])
-        samples[own] += NODES * unsure[own]
-    return np.where(error < np.inf, limit, -np.inf), error, samples
+        beside = extrapolated(values_at, step, ~infinite & (highest >= peak))
+        limit = np.where(infinite, np.copysign(np.inf, closer), np.minimum(beside.limit, highest))
+    return limit, np.where(infinite, 0.0, beside.error), beside.samples + probes.shape[1]

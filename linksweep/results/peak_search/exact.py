@@ -8,7 +8,7 @@ jumps, the closest approaches of springs and laps that end soon: paths about the
 scenes are searched along paths alone.
 
 A peak is a value of the signal at some angle, so that it exceeds the true one by no more than rounding; or the limit of
-such values at a toggle, or where rounding errors exceed them.
+such values at a toggle; or, where rounding errors exceed it, the highest value of a polynomial through others beside.
 """
 
 from __future__ import annotations

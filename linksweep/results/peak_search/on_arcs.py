@@ -19,7 +19,6 @@ from linksweep.results.peak_search.along_paths import (
     Best,
     SignalPeak,
     angle_in_period,
-    limits_by_polynomials,
     raise_to,
 )
 from linksweep.results.peak_search.arcs import NEAREST, arc_ends, steps_at_ends
@@ -39,6 +38,7 @@ from linksweep.results.peak_search.pieces import (
     known_on_pieces,
     values_at,
 )
+from linksweep.results.peak_search.singular.extrapolated import Extrapolated, extrapolated
 from linksweep.results.peak_search.singular.poles import designs_without_jams
 from linksweep.scene.pairs import Array, in_order, some_of
 from linksweep.scene.scene import Scene
@@ -162,10 +162,10 @@ def _highest(group: Group, arcs: Arcs, signals: tuple[str, ...]) -> tuple[Best, 
     for end, edge in enumerate(edges):
         best.raise_to(infinite[..., end] & (best.value < np.inf), np.inf, edge, 0.0)
     for end, edge in enumerate(edges):
-        limit, error, samples = _limits(group, arcs, end, signals, limited[..., end])
-        limit = np.minimum(limit, closer[..., end] + change[..., end])
-        best.raise_to(limit > best.value, limit, edge, error)
-        best.samples[...] += samples
+        beside = _extrapolated(group, arcs, end, signals, limited[..., end])
+        limit = np.minimum(beside.limit, closer[..., end] + change[..., end])
+        best.raise_to(limit > best.value, limit, edge, beside.error)
+        best.samples[...] += beside.samples
     return best, known | (status > LAST_UNJAMMED)
 
 
@@ -208,15 +208,15 @@ def _inside(away: Array, least: Array | float, length: Array) -> Array:
         return np.where((away > least) & (away < length[:, None] - least), away, np.nan)
 
 
-def _limits(group: Group, arcs: Arcs, end: int, signals: tuple[str, ...], needs: Array) -> tuple[Array, Array, Array]:
-    """Return `limits_by_polynomials` at one end of each arc."""
+def _extrapolated(group: Group, arcs: Arcs, end: int, signals: tuple[str, ...], needs: Array) -> Extrapolated:
+    """Return the polynomials of signals at one end of each arc, where they are needed (signal, arc)."""
 
     def at_distances(which: Array, rows: Array, x: Array) -> Array:
         angles = some_of(arcs, rows).beside(np.array([end]), x)
         return values_at(group.some(rows), tuple(signals[k] for k in which), angles)
 
     steps = _steps(group, arcs)[:, end] if needs.any() else np.zeros(len(arcs.row))
-    return limits_by_polynomials(at_distances, steps, needs)
+    return extrapolated(at_distances, steps, needs)
 
 
 def _steps(group: Group, arcs: Arcs) -> Array:

@@ -8,6 +8,7 @@ import pytest
 
 from linksweep.engine.peaks import brackets as b
 from linksweep.engine.peaks import paths
+from linksweep.engine.peaks.summits import slopes_between, uneven_slopes
 
 TRIALS = list(itertools.product((-2.0, -0.5, 0.0, 0.3, 2.0), (0.5, 1.0, 1.5, np.nan, np.inf)))
 
@@ -132,7 +133,7 @@ def test_searches_along_paths_have_the_same_bits_compiled_and_interpreted(joined
 
     def peaks(interpreted):
         monkeypatch.setattr(paths.SEARCHES, "waited", interpreted)
-        table, best = np.zeros((b.BRACKET_ROWS, b.in_blocks(320))), np.zeros((b.BEST_ROWS, 10))
+        table, best = np.zeros((b.BRACKET_ROWS, b.in_blocks(640))), np.zeros((b.BEST_ROWS, 10))
         rows = of(np.arange(5.0)[:, None, None], signal[:, None], x[:, None, :])
         count = paths.open_brackets(rows, x, before, after, joined, table, best)
         paths.refine(table, count, best, lambda tag, at: of(tag // 2, tag % 2, at))
@@ -155,3 +156,32 @@ def test_a_peak_beside_a_break_without_a_jump_is_found_on_either_side(side):
     paths.refine(table, count, best, lambda tag, at: 1.0 - (at + side * 0.3) ** 2)
     assert best[b.PEAK, 0] == pytest.approx(1.0, rel=1e-11)
     assert best[b.PEAK_X, 0] == pytest.approx(-side * 0.3, abs=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("joined", "start"), [(False, -3.0), *((True, start) for start in (-3.0, -1.0, 0.0, 1.6, 2.4))]
+)
+@pytest.mark.parametrize("turned", [1.0, -1.0])
+def test_of_two_summits_the_one_between_samples_that_fall_is_found(joined, start, turned):
+    """0.1·x − (x² − 1)² is −1 at 0 and −2.3 at 1.6, but higher at 1 than at −1; on a path that meets its ends, too."""
+    x = np.array([-3.0, -2.0, -1.0, 0.0, 1.6, 2.4])
+    x = np.sort(turned * np.where(x < start, x + 6.0, x))[None]
+
+    def signal(_tag, at):
+        at = np.mod(turned * at + 3.0, 6.0) - 3.0
+        return 0.1 * at - (at**2 - 1.0) ** 2
+
+    before, after = np.append(x[:, -1:] - 6.0, x[:, :-1], axis=1), np.append(x[:, 1:], x[:, :1] + 6.0, axis=1)
+    table, best = np.zeros((b.BRACKET_ROWS, b.in_blocks(9))), np.empty((b.BEST_ROWS, 1))
+    count = paths.open_brackets(signal(0, x)[None], x, before, after, joined, table, best)
+    paths.refine(table, count, best, signal)
+    place = max(np.polynomial.Polynomial([0.1, 4.0, 0.0, -4.0]).roots())
+    assert best[b.PEAK, 0] == pytest.approx(signal(0, turned * place), rel=1e-10)
+
+
+def test_slopes_of_the_cubic_through_uneven_samples():
+    """At two of 0, 0.4, 1.3 and 3: those of the cubic itself, by their step."""
+    cubic, at = np.polynomial.Polynomial([3.0, 1.0, -2.0, 0.7]), np.array([0.0, 0.4, 1.3, 3.0])
+    slopes = uneven_slopes(*cubic(at), 0.4 / 0.9, 1.7 / 0.9)
+    np.testing.assert_allclose(slopes, 0.9 * cubic.deriv()(at[1:3]), rtol=1e-12)
+    assert uneven_slopes(1.0, 2.0, 4.0, 3.0, 1.0, 1.0) == pytest.approx(slopes_between(1.0, 2.0, 4.0, 3.0))

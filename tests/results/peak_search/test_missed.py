@@ -62,6 +62,12 @@ def test_a_peak_at_once_after_the_start_of_a_piece_is_found():
         ("Watt six-bar by its output", 10_000_042, 0, 3824),  # beside two dead centres, one within 10° of the other
         ("Watt six-bar by its output", 10_000_054, 0, 6491),  # two summits within half the width of a near-toggle
         ("Watt six-bar by its output", 10_000_068, 0, 4954),  # 0.003° from a dead centre, at which rounding was as high
+        (
+            "Watt six-bar by its output",
+            30_000_079,
+            0,
+            1891,
+        ),  # of two summits, 0.006° apart, one between samples that fall
         ("six-bar of any lengths by its output", 20, 1, 3584),  # a limit at a toggle, tenfold within 0.01°
         ("six-bar of any lengths by its output", 7_000_017, 0, 6403),  # a limit where samples are rough up to 0.02°
         ("six-bar of any lengths by its output", 20, 1, 8383),  # a rise ten-thousandfold within 0.01° of a toggle

@@ -10,25 +10,36 @@ import numpy as np
 from linksweep.base.degrees import signed_distance
 from linksweep.results.peak_search.along_paths import (
     SignalPeak,
+    angle_in_period,
     follow,
+    inside_part,
     numbers_of,
     put,
     raise_to,
-    raise_to_limits,
     raise_to_poles,
 )
 from linksweep.results.peak_search.arcs import arcs_within
 from linksweep.results.peak_search.groups import Group
 from linksweep.results.peak_search.paths import Part, breaks_of, windows_beside
+from linksweep.results.peak_search.singular.extrapolated import SPANS, extrapolated
 from linksweep.results.peak_search.singular.rounding_errors import (
+    CLEAR,
     CLOSE_BY,
     FARTHER,
+    Singular,
     are_smooth,
     clear_of,
     singular_places,
     spoilt_peaks,
 )
-from linksweep.scene.pairs import Array
+from linksweep.scene.pairs import Array, in_period, some_of
+
+SPANS_BESIDE = (*SPANS, 0.008)
+"""Distances of the farthest samples from a singular place, in units of `STEP`: a force that rises a hundredfold within
+0.01 degree may have a limit there, too."""
+STEP, OF_ROUNDING, KNOWN = 0.1, 32.0, 1e-3
+"""Polynomials beside singular places: the step [degree] that `SPANS` multiply; the error, relative to their last terms,
+as values have rounding errors; and the largest, relative to them, with which a peak is raised."""
 
 
 def clear_of_rounding_errors(group: Group, peaks: dict[str, SignalPeak], part: Part | None) -> None:
@@ -48,12 +59,54 @@ def clear_of_rounding_errors(group: Group, peaks: dict[str, SignalPeak], part: P
             _search_clear_of(*places.of_designs(designs, clear[k]), own, peak, part)
     if clear.any():
         raise_to_poles(group, peaks, part)
-    raise_to_limits(group, peaks, places, clear, part)
+    _raise_to_limits(group, peaks, places, clear, part)
     for k in np.flatnonzero(clear.any(axis=1)):
         designs, peak = np.unique(places.row[clear[k] > 0.0]), {signals[k]: peaks[signals[k]]}
         raise_to_poles(group, peak, part, places.as_poles(clear[k]))
         close = places.close_to(designs, clear[k], group.scene.period)
         _raise_close_to(*close, group.some(designs), peak, part)
+
+
+def _raise_to_limits(
+    group: Group, peaks: dict[str, SignalPeak], places: Singular, clear: Array, part: Part | None
+) -> None:
+    """Raise finite peaks beside singular places to the limits of their signals there, or to the summits of polynomials
+    closer by than `clear` (signal, place) [degree], where samples may consist of rounding errors; or raise their
+    bounds, where neither is known as well. `part`: as of `raise_to_poles`."""
+    inside = inside_part(places.angle, part, group.scene.period)
+    places, clear = some_of(places, inside), np.tile(clear[:, inside], 2)
+    signals, side = tuple(peaks), np.repeat([-1.0, 1.0], len(places.row))
+    row, angle = np.tile(places.row, 2), np.tile(places.angle, 2)
+    known = zip(*(numbers_of(peak, group)[:2] for peak in peaks.values()), strict=True)
+    value, at = (np.stack(numbers)[:, row] for numbers in known)
+    reach = 2.0 * np.maximum(clear, CLEAR)
+    none = np.isnan(value) & (clear > 0.0)  # of a part that lies too close to the place
+    value = np.where(none, -np.inf, value)
+    needs = none | np.isfinite(value) & (np.abs(signed_distance(at, angle, group.scene.period)) < reach)
+
+    def values_at(which: Array, ends: Array, x: Array) -> Array:
+        angles, rows = angle[ends, None] + side[ends, None] * x, np.repeat(row[ends], x.shape[1])
+        names = tuple(signals[k] for k in which)
+        return group.values(names, rows, angles.ravel()).reshape(-1, *x.shape)
+
+    beside = extrapolated(values_at, np.full(len(row), STEP), needs, SPANS_BESIDE)
+    within = clear if part is None else np.minimum(clear, _distance_to_end(angle, side, part, group.scene.period))
+    height, distance = beside.highest(within)
+    beyond = OF_ROUNDING * beside.error
+    higher = (beyond <= KNOWN * np.abs(height)) & (height - beyond > value)
+    with np.errstate(invalid="ignore"):  # of polynomials that are not known
+        bound = np.where(higher, beyond, np.maximum(height + beyond - value, 0.0))
+    there = angle_in_period(angle + side * distance, group.scene.period)
+    numbers = np.where(higher, height, value), np.where(higher, there, at), bound, beside.samples
+    for k, peak in enumerate(peaks.values()):
+        ends = np.flatnonzero(needs[k] & (beside.error[k] < np.inf))
+        raise_to(peak, group.some(row[ends]), tuple(table[k, ends] for table in numbers))
+
+
+def _distance_to_end(angle: Array, side: Array, part: Part, period: float) -> Array:
+    """Return the distances [degree] from angles inside a part of the period to its start (side −1) or end (1)."""
+    from_start = in_period(angle - part[0], period)
+    return np.where(side < 0.0, from_start, part[1] - part[0] - from_start)
 
 
 def raise_beside_breaks(group: Group, peaks: dict[str, SignalPeak], part: Part | None) -> None:
