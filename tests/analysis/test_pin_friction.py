@@ -174,6 +174,7 @@ def test_its_scene_has_friction_as_loads():
     ("inputs", "message"),
     [
         ({"B": ls.Bearing(diameter=0.01)}, "pins: no pin has friction"),
+        (None, "pins: no pin has friction"),
         ({"B": ls.Bearing(friction=0.1)}, "pins.B has friction but no diameter: give it"),
         ({"X": RUBBING}, "pins: nothing is named 'X'"),
     ],

@@ -137,7 +137,7 @@ def pin_friction(
 def _rubbing(scene: Scene, pins: Mapping[str, Bearing]) -> dict[str, RubbingPin]:
     """Return the pins that have friction."""
     links = checked_pins(scene, pins)
-    rubs = {pin: bearing for pin, bearing in pins.items() if np.any(bearing.friction)}
+    rubs = {pin: bearing for pin, bearing in (pins or {}).items() if np.any(bearing.friction)}
     refuse([f"pins.{pin} has friction but no diameter: give it" for pin, b in rubs.items() if b.diameter is None])
     refuse([] if rubs else ['pins: no pin has friction; give it, as in {"B": ls.Bearing(diameter=0.02, friction=0.1)}'])
     require_one_branch(scene)

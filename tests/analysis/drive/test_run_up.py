@@ -55,6 +55,7 @@ OF_SLIDER_CRANK = reference.Machine(
     **WEIGHT,
 )
 PINS = ["F12", "F32", "F43", "F14"]
+OF_BARS = replace(FOUR_BAR, mechanism=replace(FOUR_BAR.mechanism, coupler=ls.Bar(0.2, 0.02, 0.02, 7750.0)))
 LIGHT = tuple(replace(link, mass=0.0, inertia=0.0) for link in (ls.Link(*ROD), ls.Link(*ROCKER)))
 FLYWHEEL = ls.Scene(ls.FourBar(ls.Link(0.08, 0.0, 5e-3), *LIGHT, ground=0.2), omega2=1.0)
 """A crank of constant inertia: the other links have no mass."""
@@ -374,6 +375,7 @@ def test_a_run_down_from_several_speeds_is_its_designs():
         (lambda: ls.run_up(FOUR_BAR, MOTOR, ratio=0.0), "ratio = 0"),
         (lambda: ls.run_up(FOUR_BAR, MOTOR, turns=0.0), "turns = 0"),
         (lambda: ls.run_up(FOUR_BAR, MOTOR, of=["F23z"]), "F23z"),
+        (lambda: ls.run_up(OF_BARS, MOTOR, of=["bending_moment3"]), "of: bending_moment3 is along a link"),
         (lambda: ls.run_up(replace(FOUR_BAR, drive="rocker"), MOTOR), 'drive = "rocker"'),
         (lambda: ls.run_up(FOUR_BAR, MOTOR, threads=0), "threads = 0"),
         (lambda: ls.run_down(FOUR_BAR, threads=0), "threads = 0"),

@@ -21,6 +21,7 @@ from linksweep.base.validate import Number, Rule, refuse
 from linksweep.chains.between_links import force_name
 from linksweep.results.compute import quantity_problems, requested_some
 from linksweep.results.dataset import design_coordinates, flags, provenance, with_units
+from linksweep.scene.at_sections import link_of
 from linksweep.scene.pairs import Array, by_row
 from linksweep.scene.scene import Scene
 
@@ -112,7 +113,8 @@ def checked(scene: Scene, start: Any, turns: Any, of: Names) -> tuple[Number, fl
     start, turns = checked_number("start", start, START), one_number("turns", turns, TURNS)
     names = requested_some("of", pins_and_torque(scene) if of is None else of, scene)
     unknown = [problem for name in names for problem in quantity_problems("of", name, scene.table.quantity, scene)]
-    refuse(unknown)
+    along = [name for name in names if link_of(name)]
+    refuse(unknown or [f"of: {name} is along a link: a run has none; ask for it with ls.peaks" for name in along])
     return start, turns, tuple(names)
 
 
