@@ -135,5 +135,5 @@ def _widths(path: str, widths: Numbers, pins: Mapping[str, Any]) -> dict[str, Nu
     """Return the width of each pin's eye, or arm of its fork."""
     by_pin = numbers_by_pin(path, widths, pins, WIDTH)
     missing = [pin for pin in pins if pin not in by_pin]
-    refuse([f"{path}: none for pin {', '.join(missing)}"] if missing else [])
+    refuse([f"{path}: none for pin {', '.join(missing)}: give one of each pin, or one of all"] if missing else [])
     return by_pin
