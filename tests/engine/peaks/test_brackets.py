@@ -46,6 +46,18 @@ def test_one_more_point(place, value):
     np.testing.assert_array_equal(table[list(b.POINTS), 0], expected)
 
 
+@pytest.mark.parametrize("order", [*itertools.permutations(range(3))])
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_the_highest_of_three_trials_is_kept_beyond_a_lower_one(side, order):
+    """Between it, at 0.8, and the middle, at 0, a lower trial would end the bracket before it."""
+    table = one((-1.0, 0.0, 0.0, 1.0, 1.0, 0.0))
+    trials = np.array([[0.3, 0.5], [0.8, 2.0], [-0.6, 0.2]])[list(order)]
+    table[list(b.TRIALS), 0], table[list(b.VALUES), 0] = side * trials[:, 0], trials[:, 1]
+    b.insert_trials(table, 1)
+    assert (table[b.XB, 0], table[b.FB, 0]) == (side * 0.8, 2.0)
+    assert sorted(table[[b.XA, b.XC], 0] * side) == [0.3, 1.0]
+
+
 @pytest.mark.parametrize("peak", [-0.7, 0.0, 0.123456, 0.999])
 @pytest.mark.parametrize("shape", [np.cos, lambda x: -np.abs(x), lambda x: -np.abs(x) - 1e3 * (x > 0.0)])
 def test_brackets_close_on_smooth_peaks_kinks_and_jumps(peak, shape):
