@@ -3,12 +3,17 @@
 `python -m benchmarks --only missed` is the same for a million.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from long import long_but
 
 import linksweep as ls
 from benchmarks.accuracy import missed
+from linksweep.base.degrees import signed_distance
+from linksweep.results.peak_search.groups import groups
+from linksweep.results.peak_search.paths import near_toggle_samples
 
 QUICK = "slider-crank with friction", "knuckle-joint press with friction"
 
@@ -100,6 +105,20 @@ def test_designs_at_speeds_in_a_table_that_were_missed_are_no_more(seed, designs
     assert one.period == 720.0
     samples = missed.of_all_turns(one, family.near_toggle)
     assert missed.shortfall(ls.peaks(one), ls.peaks(one, theta2=samples)) <= missed.ALLOWED
+
+
+def test_samples_within_the_width_of_a_near_toggle_are_twice_as_many_by_another_drive():
+    """Forces over the rate of another drive vary more there."""
+    scene, within = missed.FAMILIES["Watt six-bar"].scene(np.random.default_rng([3, 0]), 10), []
+    for drive in ("crank", "output"):
+        (group,) = groups(replace(scene, drive=drive), np.arange(10))
+        angles, widths = group.near_toggles()
+        middle = angles[:, :1] + group.number(scene.mechanism.near_toggle_angle)[:, None]
+        away = np.abs(signed_distance(near_toggle_samples(group), middle, 360.0))
+        within.append((away < np.degrees(widths[:, :1])).sum(axis=1))
+    by_crank, by_output = within
+    assert (by_crank > 0).sum() == 8
+    assert (by_output[by_crank > 0] > 1.5 * by_crank[by_crank > 0]).all()
 
 
 def test_half_of_the_machines_come_near_to_a_toggle():
