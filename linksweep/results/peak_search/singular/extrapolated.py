@@ -42,19 +42,26 @@ class Extrapolated(NamedTuple):
     def highest(self, within: Array) -> tuple[Array, Array]:
         """Return the highest values of polynomials up to a distance, limits included, −inf where they are not known,
         and where they are."""
-        heights, distances = (self.terms[..., None, :] * FINELY).sum(axis=-1), self.farthest[..., None] * SHARES
-        nth = np.where(distances <= within[..., None], heights, -np.inf).argmax(axis=-1)[..., None]
-        middle = np.clip(nth, 1, len(BETWEEN) - 2)
-        before, top, after = (np.take_along_axis(heights, middle + k, axis=-1)[..., 0] for k in (-1, 0, 1))
-        slope, bend = 0.5 * (after - before), before - 2.0 * top + after
-        with np.errstate(divide="ignore", invalid="ignore"):
-            step = np.where(bend < 0.0, np.clip(-slope / bend, -1.0, 1.0), 0.0)
-        summit = top + step * (slope + 0.5 * step * bend)
-        place = self.farthest * np.sin(0.5 * (middle[..., 0] + step) * BETWEEN[1]) ** 2
-        height, distance = (np.take_along_axis(numbers, nth, axis=-1)[..., 0] for numbers in (heights, distances))
-        higher = (summit > height) & (place <= within)
-        height, distance = np.where(higher, summit, height), np.where(higher, place, distance)
-        return np.where(self.error < np.inf, height, -np.inf), distance
+        height, distance = np.full(self.error.shape, -np.inf), np.zeros(self.error.shape)
+        known = self.error < np.inf
+        height[known], distance[known] = _highest(self.terms[known], self.farthest[known], within[known])
+        return height, distance
+
+
+def _highest(terms: Array, farthest: Array, within: Array) -> tuple[Array, Array]:
+    """Return the highest values of polynomials (each, term) up to a distance, and where they are."""
+    heights, distances = (terms[:, None] * FINELY).sum(axis=-1), farthest[:, None] * SHARES
+    nth = np.where(distances <= within[:, None], heights, -np.inf).argmax(axis=1)[:, None]
+    middle = np.clip(nth, 1, len(BETWEEN) - 2)
+    before, top, after = (np.take_along_axis(heights, middle + k, axis=1)[:, 0] for k in (-1, 0, 1))
+    slope, bend = 0.5 * (after - before), before - 2.0 * top + after
+    with np.errstate(divide="ignore", invalid="ignore"):
+        step = np.where(bend < 0.0, np.clip(-slope / bend, -1.0, 1.0), 0.0)
+    summit = top + step * (slope + 0.5 * step * bend)
+    place = farthest * np.sin(0.5 * (middle[:, 0] + step) * BETWEEN[1]) ** 2
+    height, distance = (np.take_along_axis(numbers, nth, axis=1)[:, 0] for numbers in (heights, distances))
+    higher = (summit > height) & (place <= within)
+    return np.where(higher, summit, height), np.where(higher, place, distance)
 
 
 def extrapolated(

@@ -59,7 +59,7 @@ def clear_of_rounding_errors(group: Group, peaks: dict[str, SignalPeak], part: P
             _search_clear_of(*places.of_designs(designs, clear[k]), own, peak, part)
     if clear.any():
         raise_to_poles(group, peaks, part)
-    _raise_to_limits(group, peaks, places, clear, part)
+    _raise_by_polynomials(group, peaks, places, clear, part)
     for k in np.flatnonzero(clear.any(axis=1)):
         designs, peak = np.unique(places.row[clear[k] > 0.0]), {signals[k]: peaks[signals[k]]}
         raise_to_poles(group, peak, part, places.as_poles(clear[k]))
@@ -67,12 +67,12 @@ def clear_of_rounding_errors(group: Group, peaks: dict[str, SignalPeak], part: P
         _raise_close_to(*close, group.some(designs), peak, part)
 
 
-def _raise_to_limits(
+def _raise_by_polynomials(
     group: Group, peaks: dict[str, SignalPeak], places: Singular, clear: Array, part: Part | None
 ) -> None:
-    """Raise finite peaks beside singular places to the limits of their signals there, or to the summits of polynomials
-    closer by than `clear` (signal, place) [degree], where samples may consist of rounding errors; or raise their
-    bounds, where neither is known as well. `part`: as of `raise_to_poles`."""
+    """Raise finite peaks beside singular places to the highest values of polynomials, from the limits there on as far
+    as samples may consist of rounding errors, `clear` (signal, place) [degree]; or raise their bounds, where these are
+    not known as well. `part`: as of `raise_to_poles`."""
     inside = inside_part(places.angle, part, group.scene.period)
     places, clear = some_of(places, inside), np.tile(clear[:, inside], 2)
     signals, side = tuple(peaks), np.repeat([-1.0, 1.0], len(places.row))
