@@ -2,7 +2,8 @@
 
 At a constant speed w the machine takes the mean T̄(w) over the cycle of the torque of inverse dynamics, by the
 quadrature of `duty`; at the operating point i·M(i·w) = T̄(w) + L, with the torque L that the gear takes. Of several such
-speeds it is the fastest, which a motor of falling torque keeps. The motor's own fluctuation over the cycle shifts the
+speeds it is the fastest, which a motor of falling torque keeps. Where the loads drive the machine, the motor brakes it
+at the least such speed beyond that at which it no longer drives. The motor's own fluctuation over the cycle shifts the
 mean speed by its square only.
 """
 
@@ -21,6 +22,10 @@ from linksweep.scene.pairs import Array
 PARTS = np.linspace(0.0, 1.0, 5)
 """Speeds, as parts of the fastest, between which the torque is a polynomial, for a search; without friction it is one
 of the second degree."""
+BEYOND = 3.0
+"""Part of the fastest speed up to which the search looks where loads drive the machine."""
+NONE, CLOSE = 1e-9, 1e-12
+"""Mean torque, relative to the motor's, that counts as none, and torque that counts as none besides the largest."""
 PLACES, ROUNDS = 512, 8
 """Speeds at which the search looks, and most steps of the secant method from there."""
 ROUNDING = 1e-14
@@ -48,11 +53,12 @@ def operating_speed(designs: Designs) -> Array:
 
     near = np.stack([load(part * top) for part in PARTS])
     powers = np.linalg.solve(np.vander(PARTS), near)
-    places = np.linspace(1.0, 0.0, PLACES)
-    surplus = [supply(part * top) - np.vander([part], len(PARTS))[0] @ powers for part in places]
-    enough = np.stack(surplus) >= -1e-12 * np.max(abs(np.stack(surplus)), axis=0)
-    first = np.argmax(enough, axis=0)
-    last, speed = top * places[np.maximum(first - 1, 0)], top * places[first]
+    driven = near[-1] < -NONE * np.max([supply(part * top) for part in PARTS], axis=0)
+    places = np.linspace(1.0, np.where(driven, BEYOND, 0.0), PLACES)
+    surplus = np.stack([supply(part * top) - (np.vander(part, len(PARTS)) * powers.T).sum(axis=1) for part in places])
+    passed = np.where(driven, -surplus, surplus) >= -CLOSE * np.max(abs(surplus), axis=0)
+    first = np.argmax(passed, axis=0)
+    last, speed = top * np.take_along_axis(places, np.stack([np.maximum(first - 1, 0), first]), axis=0)
     before = excess(last)
     for _ in range(ROUNDS):
         now = excess(speed)
@@ -61,4 +67,4 @@ def operating_speed(designs: Designs) -> Array:
         last, before, speed = speed, now, np.where(np.isfinite(step), speed - step, speed)
         if not (abs(speed - last) > ROUNDING * top).any():
             break
-    return np.where(enough.any(axis=0), np.where(first == 0, top, speed), np.nan)
+    return np.where(passed.any(axis=0), np.where(first == 0, top, speed), np.nan)

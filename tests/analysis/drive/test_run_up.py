@@ -173,6 +173,18 @@ def test_the_operating_point_by_hand():
     np.testing.assert_allclose(run.speed[-1], 0.9 * speed, rtol=1e-12)
 
 
+def test_a_motor_brakes_loads_that_drive_the_machine_beyond_its_own_speed():
+    """M0 (1 − i ω/ω0) i = −2 η; an induction motor brakes at the least of two slips, a measured curve not at all."""
+    driven = replace(FLYWHEEL, loads=[ls.Load("crank", torque=2.0)])
+    run = ls.run_up(driven, MOTOR, ratio=RATIO, efficiency=0.75, of=["F12"])
+    speed = 120.0 / RATIO * (1.0 + 1.5 / (1.5 * RATIO))
+    np.testing.assert_allclose([run.operating_speed, run.speed[-1]], [speed, 0.99 * speed], rtol=1e-12)
+    kloss = ls.InductionMotor(30.0, 5.0, breakdown_slip=0.1)  # −5 N m at the slip −0.1: −2 at s + 0.01/s = −0.5
+    np.testing.assert_allclose(ls.run_up(driven, kloss, of=["F12"]).operating_speed, 30.0 * 1.0208712152522, rtol=1e-12)
+    curve = ls.run_up(driven, ls.Motor([0.0, 30.0], [5.0, 0.0]), of=["F12"])
+    assert meaning(curve) == ["ok"] and np.isnan(curve.operating_speed)
+
+
 def test_heat_of_an_induction_motor_is_the_energy_of_its_flywheel():
     """Whatever its curve: M (ω_s − ω) dt = J (ω_s − ω) dω."""
     motor = ls.InductionMotor(157.0, 15.0, rated_torque=6.0, rated_speed=149.0, inertia=4e-3)

@@ -62,8 +62,8 @@ def run_up(
         Efficiency of the gear, in (0, 1] [1]: power is lost on the way to the machine, and again on the way back.
     until : float, default 0.99
         Speed at which the run-up is over, per that of the operating point [1]: there the motor gives the mean torque
-        that the machine takes over a cycle at constant speed. A machine without one is to reach that part of the speed
-        at which its motor no longer drives.
+        that the machine takes over a cycle at constant speed, or brakes it as much as its loads drive it. A machine
+        without one is to reach that part of the speed at which its motor no longer drives.
     start : float or DataArray, default 0.0
         Crank angle from which it starts [degree].
     of : str or iterable of str, default None
