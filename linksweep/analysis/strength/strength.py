@@ -222,7 +222,8 @@ class _Link:
         stress, at, share = _at_largest(self._size(ds), ds["angle"], ds["share"])
         with np.errstate(divide="ignore"):
             safety = self.material.yield_strength / stress
-        return {"stress": stress, "stress_at": at, "stress_section": share, "yield_safety": safety}
+        place = share.where(stress.notnull())
+        return {"stress": stress, "stress_at": at, "stress_section": place, "yield_safety": safety}
 
     def _fatigue(self, ds: xr.Dataset) -> dict[str, xr.DataArray]:
         """Return the least safeties, and the cycle of stress where that by Goodman is least."""
@@ -233,7 +234,7 @@ class _Link:
         with np.errstate(divide="ignore"):
             danger, mean, amplitude, share, factor, fibre = _at_largest(1.0 / goodman, *places)
             (other,) = _at_largest(1.0 / soderberg)
-        results = {"fatigue_section": share, "stress_mean": mean, "stress_amplitude": amplitude}
+        results = {"fatigue_section": share.where(danger.notnull()), "stress_mean": mean, "stress_amplitude": amplitude}
         if self.material.slope is not None:
             ends = {"largest": mean + amplitude, "least": mean - amplitude}
             place = xr.Dataset({"share": share, "factor": factor, "fibre": fibre, **ends})

@@ -222,6 +222,15 @@ def test_a_bar_that_only_its_own_inertia_loads_reaches_no_other_safety():
     assert int(ds.status.sel(link="crank")) == 1 and np.isnan(ds.thickness).all()
 
 
+def test_a_link_of_a_machine_that_cannot_be_assembled_has_no_place_of_its_largest_stress():
+    press = ls.example("press")
+    crank = replace(press.mechanism.crank, length=xr.DataArray([0.08, 5.0], dims="k"))
+    ds = ls.strength(replace(press, mechanism=replace(press.mechanism, crank=crank)), STEEL).sel(link="coupler")
+    np.testing.assert_array_equal(ds.status, [0, 2])
+    for name in ("stress", "stress_section", "stress_at", "fatigue_section"):
+        np.testing.assert_array_equal(np.isnan(ds[name]), [False, True])
+
+
 def test_each_of_many_designs_is_sized_as_one():
     press = replace(ls.example("press"), omega2=xr.DataArray([30.0, 100.0], dims="speed"))
     safeties = xr.DataArray([2.0, 1.5], dims="required")
